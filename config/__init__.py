@@ -1,0 +1,1 @@
+"""Deployments, robots and their typed schema. Imports nothing else of Surefoot; everybody may read it."""

@@ -1,0 +1,129 @@
+"""Reads TOML into frozen dataclasses: every key known, every type checked, every error with its path."""
+
+from __future__ import annotations
+
+import dataclasses
+import tomllib
+import types
+import typing
+from pathlib import Path
+from typing import Any
+
+
+class ConfigError(ValueError):
+    """A configuration that cannot be used; says which key, its value and what would be right."""
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Parse a TOML file.
+
+    Raises:
+        ConfigError: the file is missing or is not TOML.
+    """
+    try:
+        with open(path, "rb") as file:
+            return tomllib.load(file)
+    except FileNotFoundError:
+        raise ConfigError(f"no such file: {path}; give the path of a TOML file") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"{path} is not valid TOML: {error}") from None
+
+
+def build(cls: type, table: Any, path: str = "") -> Any:
+    """Make a dataclass of type `cls` from a TOML table.
+
+    Args:
+        cls: a dataclass; fields without default are required.
+        table: what TOML holds there.
+        path: dotted path of the table, for messages.
+
+    Raises:
+        ConfigError: unknown key, missing key or wrong type, named by its dotted path.
+    """
+    where = path or "the top level"
+    if not isinstance(table, dict):
+        raise ConfigError(f"{where}: expected a table, got {table!r}")
+    hints = typing.get_type_hints(cls)
+    fields = {field.name: field for field in dataclasses.fields(cls) if field.init}
+    for key in table:
+        if key not in fields:
+            raise ConfigError(f"{_join(path, key)}: unknown key; {where} has {', '.join(sorted(fields))}")
+    values = {}
+    for name, field in fields.items():
+        if name in table:
+            values[name] = _convert(hints[name], table[name], _join(path, name))
+        elif field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
+            raise ConfigError(f"{_join(path, name)}: missing; {where} must give it")
+    try:
+        return cls(**values)
+    except ConfigError as error:
+        raise ConfigError(f"{where}: {error}") from None
+
+
+def with_override(table: dict[str, Any], assignment: str) -> dict[str, Any]:
+    """A copy of `table` with one `a.b.c=value` applied; the value is TOML, or a bare word taken as a string."""
+    dotted, equals, text = assignment.partition("=")
+    if not equals or not dotted:
+        raise ConfigError(f"--set {assignment!r}: write it as section.key=value")
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text
+    keys = dotted.strip().split(".")
+    result = dict(table)
+    inner = result
+    for key in keys[:-1]:
+        inner[key] = dict(inner.get(key, {}))
+        inner = inner[key]
+    inner[keys[-1]] = value
+    return result
+
+
+def to_table(value: Any) -> Any:
+    """The plain tables, lists and numbers behind a dataclass: what a log or a results file holds."""
+    if dataclasses.is_dataclass(value):
+        return {f.name: to_table(getattr(value, f.name)) for f in dataclasses.fields(value)}
+    if isinstance(value, dict):
+        return {key: to_table(item) for key, item in value.items()}
+    if isinstance(value, (tuple, list)):
+        return [to_table(item) for item in value]
+    return value
+
+
+def _join(path: str, key: str) -> str:
+    return f"{path}.{key}" if path else key
+
+
+def _convert(hint: Any, value: Any, path: str) -> Any:
+    origin, args = typing.get_origin(hint), typing.get_args(hint)
+    if origin in (typing.Union, types.UnionType):
+        return _convert(next(arg for arg in args if arg is not type(None)), value, path)
+    if origin is typing.Literal:
+        if value not in args:
+            raise ConfigError(f"{path} = {value!r}: must be one of {', '.join(map(repr, args))}")
+        return value
+    if origin is dict:
+        if not isinstance(value, dict):
+            raise ConfigError(f"{path}: expected a table, got {value!r}")
+        return {key: _convert(args[1], item, _join(path, key)) for key, item in value.items()}
+    if origin is tuple:
+        return _convert_tuple(args, value, path)
+    if dataclasses.is_dataclass(hint):
+        return build(hint, value, path)
+    if hint is float and isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    if not isinstance(value, hint) or (hint is not bool and isinstance(value, bool)):
+        raise ConfigError(f"{path} = {value!r}: expected {hint.__name__}")
+    return value
+
+
+def _convert_tuple(args: tuple, value: Any, path: str) -> tuple:
+    if not isinstance(value, list):
+        raise ConfigError(f"{path} = {value!r}: expected a list")
+    if len(args) == 2 and args[1] is Ellipsis:
+        return tuple(_convert(args[0], item, f"{path}[{i}]") for i, item in enumerate(value))
+    if len(value) != len(args):
+        raise ConfigError(f"{path} = {value!r}: expected {len(args)} entries, got {len(value)}")
+    return tuple(
+        _convert(arg, item, f"{path}[{i}]") for i, (arg, item) in enumerate(zip(args, value, strict=True))
+    )
