@@ -1,0 +1,138 @@
+"""Messages to bytes and back: one msgpack map, arrays as raw little-endian bytes, everything checked."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import msgpack
+import numpy as np
+
+from surefoot.bus.errors import MessageError
+from surefoot.bus.message import FieldSpec, Message, specs
+
+_LITTLE = {"float64": "<f8", "int64": "<i8", "bool": "?"}
+
+
+@cache
+def _plan(cls: type[Message]) -> tuple[tuple[str, FieldSpec, np.dtype | None], ...]:
+    return tuple(
+        (name, spec, np.dtype(_LITTLE[spec.dtype]) if spec.kind == "array" else None)
+        for name, spec in specs(cls).items()
+    )
+
+
+def encode(message: Message, volatile: bool = True) -> bytes:
+    """Bytes of a message.
+
+    Args:
+        message: any message of `bus.messages`.
+        volatile: include measurements of the machine; without them equal runs give equal bytes.
+
+    Raises:
+        MessageError: a field's shape or type is not the declared one.
+    """
+    fields: dict[str, Any] = {}
+    for name, spec, dtype in _plan(type(message)):
+        if spec.volatile and not volatile:
+            continue
+        value = getattr(message, name)
+        if dtype is not None:
+            value = np.asarray(value)
+            if value.dtype != dtype:
+                value = value.astype(dtype, casting="same_kind")
+            _check_shape(type(message), name, spec, value.shape)
+            if -1 in spec.shape:
+                fields[name] = [list(value.shape), value.tobytes()]
+            else:
+                fields[name] = value.tobytes()
+        elif spec.kind == "number":
+            fields[name] = float(value)
+        elif spec.kind == "integer":
+            fields[name] = int(value)
+        elif spec.kind == "flag":
+            fields[name] = bool(value)
+        elif spec.kind == "names":
+            fields[name] = list(value)
+        else:
+            fields[name] = value
+    return msgpack.packb(fields)
+
+
+def decode(cls: type[Message], data: bytes) -> Message:
+    """The message in `data`; arrays are read-only views of it. Fields this version does not know are ignored.
+
+    Raises:
+        MessageError: not msgpack, a wrong type or shape, or a number that is not finite, by field name.
+    """
+    try:
+        fields = msgpack.unpackb(data)
+    except Exception as error:
+        raise MessageError(f"{cls.__name__}: not msgpack ({error}); {len(data)} bytes dropped") from None
+    if not isinstance(fields, dict):
+        raise MessageError(f"{cls.__name__}: expected a map of fields, got {type(fields).__name__}")
+    values = {}
+    for name, spec, dtype in _plan(cls):
+        if name in fields:
+            values[name] = _decode_field(cls, name, spec, dtype, fields[name])
+    return cls(**values)
+
+
+def check(message: Message) -> Message:
+    """The same message, if every number in it is finite and every shape as declared.
+
+    Raises:
+        MessageError: naming the field, its value and what is expected.
+    """
+    for name, spec, dtype in _plan(type(message)):
+        value = getattr(message, name)
+        if dtype is not None:
+            _check_shape(type(message), name, spec, np.shape(value))
+        if spec.finite and spec.kind in ("array", "number") and not np.isfinite(value).all():
+            raise MessageError(f"{type(message).__name__}.{name} = {value}: not finite")
+    return message
+
+
+_PYTHON = {"number": (float, int), "integer": (int,), "flag": (bool,), "text": (str,), "names": (list,)}
+
+
+def _decode_field(cls: type, name: str, spec: FieldSpec, dtype: np.dtype | None, value: Any) -> Any:
+    if dtype is None:
+        expected = _PYTHON[spec.kind]
+        if not isinstance(value, expected) or (isinstance(value, bool) and spec.kind != "flag"):
+            raise MessageError(f"{cls.__name__}.{name} = {value!r:.80}: expected {expected[0].__name__}")
+        if spec.kind == "names":
+            if not all(isinstance(item, str) for item in value):
+                raise MessageError(f"{cls.__name__}.{name}: expected strings only")
+            return tuple(value)
+        if spec.kind == "number":
+            value = float(value)
+            if spec.finite and value - value != 0.0:
+                raise MessageError(f"{cls.__name__}.{name} = {value}: not finite")
+        return value
+    shape = spec.shape
+    if -1 in shape:
+        if not (isinstance(value, list) and len(value) == 2 and isinstance(value[0], list)):
+            raise MessageError(f"{cls.__name__}.{name}: expected [shape, bytes]")
+        shape, value = value
+        if not all(type(n) is int and n >= 0 for n in shape):
+            raise MessageError(f"{cls.__name__}.{name}: shape {shape!r:.80} is not a list of lengths")
+        _check_shape(cls, name, spec, tuple(shape))
+    if not isinstance(value, bytes):
+        raise MessageError(f"{cls.__name__}.{name}: expected bytes, got {type(value).__name__}")
+    count = 1
+    for n in shape:
+        count *= n
+    if len(value) != count * dtype.itemsize:
+        raise MessageError(
+            f"{cls.__name__}.{name}: {len(value)} bytes, expected {count * dtype.itemsize} for {list(shape)}"
+        )
+    result = np.frombuffer(value, dtype).reshape(shape)
+    if spec.finite and dtype.kind == "f" and not np.isfinite(result).all():
+        raise MessageError(f"{cls.__name__}.{name} = {result}: not finite")
+    return result
+
+
+def _check_shape(cls: type, name: str, spec: FieldSpec, shape: tuple[int, ...]) -> None:
+    if len(shape) != len(spec.shape) or any(a not in (-1, b) for a, b in zip(spec.shape, shape, strict=True)):
+        raise MessageError(f"{cls.__name__}.{name}: shape {tuple(shape)}, expected {spec.shape}")

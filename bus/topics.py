@@ -1,0 +1,94 @@
+"""The topic table and the process table: the one place where a key, a rate or a budget is written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from surefoot.bus import messages as m
+from surefoot.bus.message import Message
+
+
+@dataclass(frozen=True)
+class Topic:
+    """One key of the bus.
+
+    Attributes:
+        key: what follows the namespace on the wire.
+        message: its type.
+        writer: the one process that publishes it.
+        rate_hz: nominal rate; 0 when published on an event.
+        stale_after_s: a consumer must not act on older content; 0 when age means nothing.
+        recorded: part of a log.
+    """
+
+    key: str
+    message: type[Message]
+    writer: str
+    rate_hz: float = 0.0
+    stale_after_s: float = 0.0
+    recorded: bool = True
+
+
+@dataclass(frozen=True)
+class Process:
+    """When a process steps, and how long after its release its output becomes visible.
+
+    Attributes:
+        name: of the component.
+        rate_hz: of its timer; 0 for a process triggered by messages.
+        trigger: the topic whose messages release it; empty for a timer.
+        every: releases on every n-th message of the trigger.
+        budget_s: logical execution time.
+    """
+
+    name: str
+    rate_hz: float = 0.0
+    trigger: str = ""
+    every: int = 1
+    budget_s: float = 0.0
+
+
+PROCESSES = {
+    p.name: p
+    for p in (
+        Process("io", rate_hz=500.0),
+        Process("estimator", trigger="hw/state", budget_s=0.001),
+        Process("wbc", trigger="state/estimate", every=2, budget_s=0.001),
+        Process("mpc", rate_hz=100.0, budget_s=0.010),
+        Process("fsm", rate_hz=250.0, budget_s=0.002),
+        Process("trajopt", trigger="trajopt/request", budget_s=0.100),
+        Process("elevation_map", trigger="foothold/request", budget_s=0.020),
+    )
+}
+"""In the order in which processes released at the same instant step."""
+
+TOPICS = {
+    topic.key: topic
+    for topic in (
+        Topic("hw/state", m.HardwareState, "io", 500.0, 0.010),
+        Topic("joint/command", m.JointCommand, "wbc", 250.0, 0.020),
+        Topic("state/estimate", m.StateEstimate, "estimator", 500.0, 0.010),
+        Topic("fsm/reference", m.MotionReference, "fsm", 250.0, 0.100),
+        Topic("fsm/event", m.FsmEvent, "fsm"),
+        Topic("mpc/policy", m.Policy, "mpc", 100.0, 0.100),
+        Topic("trajopt/request", m.PlanRequest, "fsm"),
+        Topic("trajopt/plan", m.Plan, "trajopt"),
+        Topic("foothold/request", m.FootholdRequest, "fsm"),
+        Topic("foothold/regions", m.FootholdRegions, "elevation_map"),
+        Topic("operator/command", m.OperatorCommand, "operator"),
+        Topic("sim/truth", m.SimTruth, "io", 500.0),
+        *(Topic(f"status/{name}", m.ProcessStatus, name, 2.0, 2.0) for name in PROCESSES),
+    )
+}
+
+
+def topic(key: str) -> Topic:
+    """The topic of a key.
+
+    Raises:
+        KeyError: the key is not in the table; the message lists those that are.
+    """
+    try:
+        return TOPICS[key]
+    except KeyError:
+        raise KeyError(f"no topic {key!r}; the table has {', '.join(TOPICS)}") from None

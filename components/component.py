@@ -1,0 +1,122 @@
+"""The contract of a component: a pure step from an inbox to an outbox, and the life around it.
+
+`step` reads nothing but its release time and its inbox and publishes only through its outbox. No clock,
+environment, file or global random state inside it: that is what makes a run repeatable and replayable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from enum import Enum
+from typing import Any, ClassVar
+
+from surefoot.bus.message import Message
+from surefoot.bus.topics import TOPICS, topic
+from surefoot.config.deployment import Deployment
+
+
+class Life(Enum):
+    """Life cycle of a component."""
+
+    INIT = "INIT"
+    IDLE = "IDLE"
+    ACTIVATING = "ACTIVATING"
+    RUN = "RUN"
+    DEACTIVATING = "DEACTIVATING"
+    FAILED = "FAILED"
+
+
+class Inbox:
+    """What a step may read: the latest message of each input, and those that are new since the last step."""
+
+    def __init__(self, keys: tuple[str, ...]):
+        self._latest: dict[str, Message | None] = {topic(key).key: None for key in keys}
+        self._new: dict[str, list[Message]] = {key: [] for key in keys}
+
+    def latest(self, key: str) -> Any:
+        """The newest message of a topic, or None before the first."""
+        return self._latest[key]
+
+    def new(self, key: str) -> list[Any]:
+        """Messages that arrived since the last step, oldest first."""
+        return self._new[key]
+
+    def fresh(self, key: str, t: float) -> Any:
+        """The newest message if it is valid and younger than the topic's `stale_after_s`, else None."""
+        message = self._latest[key]
+        if message is None or not message.valid:
+            return None
+        limit = TOPICS[key].stale_after_s
+        return None if limit > 0.0 and t - message.t > limit else message
+
+    def deliver(self, key: str, message: Message) -> None:
+        """Put a message in (the runner's business)."""
+        self._latest[key] = message
+        self._new[key].append(message)
+
+    def clear_new(self) -> None:
+        """Forget what was new (the runner calls it after each step)."""
+        for messages in self._new.values():
+            messages.clear()
+
+
+class Outbox:
+    """Where a step publishes; numbers the messages and hands them to the runner."""
+
+    def __init__(self, keys: tuple[str, ...], send: Callable[[str, Message], None], boot: int = 0):
+        self._seq = {topic(key).key: 0 for key in keys}
+        self._send = send
+        self._boot = boot
+
+    def publish(self, key: str, message: Message) -> None:
+        """Publish on one of the component's outputs.
+
+        Raises:
+            KeyError: the topic is not an output of this component.
+            TypeError: the message is not of the topic's type.
+        """
+        if key not in self._seq:
+            raise KeyError(f"{key!r} is not an output; outputs are {', '.join(self._seq)}")
+        if type(message) is not TOPICS[key].message:
+            raise TypeError(f"{key} carries {TOPICS[key].message.__name__}, got {type(message).__name__}")
+        self._send(key, replace(message, seq=self._seq[key], boot=self._boot))
+        self._seq[key] += 1
+
+
+class Component:
+    """Base of every component. Class attributes say its name, inputs and outputs; `bus.topics` its timing."""
+
+    name: ClassVar[str]
+    inputs: ClassVar[tuple[str, ...]] = ()
+    outputs: ClassVar[tuple[str, ...]] = ()
+
+    def __init__(self, deployment: Deployment):
+        self.deployment = deployment
+
+    def warm_up(self) -> None:
+        """Everything slow, once: load, factorise, solve one problem."""
+
+    def activate(self, t: float, inbox: Inbox) -> bool:
+        """True once the inputs are healthy; called at each release until then."""
+        return True
+
+    def waiting_for(self, t: float, inbox: Inbox) -> str:
+        """In words what `activate` still waits for."""
+        missing = [key for key in self.inputs if inbox.latest(key) is None]
+        return f"no message yet on {', '.join(missing)}" if missing else ""
+
+    def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        """One release at time `t` [s]."""
+        raise NotImplementedError
+
+    def deactivate(self, t: float, inbox: Inbox, outbox: Outbox) -> bool:
+        """Called at each release of a stop until it returns true, so that a controller can ramp down."""
+        return True
+
+    def snapshot(self) -> dict[str, Any]:
+        """State that a restart or a replay must have: numbers, strings, lists and numpy arrays by name."""
+        return {}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take over what `snapshot` gave."""

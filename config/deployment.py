@@ -1,0 +1,53 @@
+"""One deployment: everything a run needs to know, from one TOML file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from surefoot.config.hw import Hw
+from surefoot.config.robot import Robot, load_robot
+from surefoot.config.terrain import Terrain
+from surefoot.config.typed_toml import build, read_toml, with_override
+
+
+@dataclass(frozen=True)
+class Run:
+    """How the processes run together."""
+
+    clock: Literal["simulated", "monotonic"] = "simulated"
+    command: str = "forward"  # given by the operator's side once the robot stands; "" waits for one
+    namespace: str = "surefoot"  # prefix of every key on the wire
+    log_dir: str = "log"  # where process logs go, relative to the working directory
+
+
+@dataclass(frozen=True)
+class Deployment:
+    """A whole deployment; each section's type holds its defaults."""
+
+    robot: str = "aliengo"
+    run: Run = field(default_factory=Run)
+    hw: Hw = field(default_factory=Hw)
+    terrain: Terrain = field(default_factory=Terrain)
+
+    def load_robot(self) -> Robot:
+        """The figures of this deployment's robot."""
+        return load_robot(self.robot)
+
+
+def load_deployment(path: Path | str, overrides: Sequence[str] = ()) -> Deployment:
+    """Read a deployment.
+
+    Args:
+        path: a TOML file.
+        overrides: assignments `section.key=value`, applied in order.
+
+    Raises:
+        ConfigError: the file is missing or malformed, a key is unknown or a value has the wrong type.
+    """
+    table = read_toml(Path(path))
+    for assignment in overrides:
+        table = with_override(table, assignment)
+    return build(Deployment, table)
