@@ -128,7 +128,9 @@ class MotionReference(Message):
     swing_v_touch: float = number("speed against the normal at touch-down and after", "m/s")
     swing_lands: bool = flag("contact is meant to follow", default=True)
 
-    support_leg: int = integer("leg left out of the support polygon of eq. (5); -1 constraint off", default=-1)
+    support_leg: int = integer(
+        "leg left out of the support polygon of eq. (5); -1 constraint off", default=-1
+    )
     support_t0: float = number("eq. (5) is active from here on", "s")
     support_t1: float = number("and until here", "s")
     support_margin_m: float = number("alpha of eq. (5)", "m")
@@ -137,7 +139,9 @@ class MotionReference(Message):
     probe_t0: float = number("start of the first force", "s")
     probe_dwell_s: float = number("duration of each force", "s")
     probe_blend_s: float = number("linear change from one force to the next, inside its dwell", "s")
-    probe_force_W: np.ndarray = array(-1, 3, doc="forces in order; the first entry is the force before probe_t0", unit="N")
+    probe_force_W: np.ndarray = array(
+        -1, 3, doc="forces in order; the first entry is the force before probe_t0", unit="N"
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -151,11 +155,15 @@ class Policy(Message):
     dt: float = number("interval", "s")
     x: np.ndarray = array(-1, 24, doc="states at the N+1 nodes")
     u: np.ndarray = array(-1, 24, doc="inputs over the N intervals")
-    v: np.ndarray = array(-1, 18, doc="generalised velocities at the N+1 nodes: base linear and angular in B, joints")
+    v: np.ndarray = array(
+        -1, 18, doc="generalised velocities at the N+1 nodes: base linear and angular in B, joints"
+    )
     contact: np.ndarray = array(-1, 4, doc="planned contact of the N+1 nodes", dtype="bool")
     solver: str = text("'ok', or what failed by name")
     constraint: tuple[str, ...] = names("names of the constraints in `violation`")
-    violation: np.ndarray = array(-1, doc="largest violation of each constraint over the horizon, in its unit")
+    violation: np.ndarray = array(
+        -1, doc="largest violation of each constraint over the horizon, in its unit"
+    )
     stage: tuple[str, ...] = names("names of the stages in `stage_ms`")
     stage_ms: np.ndarray = array(-1, doc="wall time of each stage of this tick", unit="ms", volatile=True)
 
@@ -182,7 +190,9 @@ class Plan(Message):
     id: int = integer("of the request")
     status: str = text("'ok', or what failed by name")
     footholds_WF: np.ndarray = array(4, 3, doc="touch-down positions", unit="m")
-    envelope_W: np.ndarray = array(6, 3, doc="full force vectors at the extrema, by rising normal force", unit="N")
+    envelope_W: np.ndarray = array(
+        6, 3, doc="full force vectors at the extrema, by rising normal force", unit="N"
+    )
     dt: float = number("interval", "s")
     x: np.ndarray = array(-1, 24, doc="states as in Policy")
     u: np.ndarray = array(-1, 24, doc="inputs as in Policy")
@@ -270,4 +280,6 @@ class ProcessStatus(Message):
     overruns: int = integer("deadlines missed since start (monotonic clock only)")
     bad_messages: int = integer("messages dropped because they were malformed")
     input: tuple[str, ...] = names("topics read")
-    input_age_s: np.ndarray = array(-1, doc="age of each input's latest message; -1 none yet", unit="s", volatile=True)
+    input_age_s: np.ndarray = array(
+        -1, doc="age of each input's latest message; -1 none yet", unit="s", volatile=True
+    )

@@ -7,10 +7,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from surefoot.config.estimator import Estimator
 from surefoot.config.hw import Hw
 from surefoot.config.robot import Robot, load_robot
 from surefoot.config.terrain import Terrain
 from surefoot.config.typed_toml import build, read_toml, with_override
+from surefoot.config.wbc import Wbc
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,8 @@ class Deployment:
     run: Run = field(default_factory=Run)
     hw: Hw = field(default_factory=Hw)
     terrain: Terrain = field(default_factory=Terrain)
+    estimator: Estimator = field(default_factory=Estimator)
+    wbc: Wbc = field(default_factory=Wbc)
 
     def load_robot(self) -> Robot:
         """The figures of this deployment's robot."""

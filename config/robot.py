@@ -114,9 +114,7 @@ class Robot:
     @property
     def mass(self) -> float:
         """Total mass [kg]."""
-        return self.trunk.mass + sum(
-            getattr(leg, part).mass for leg in self.legs.values() for part in JOINTS
-        )
+        return self.trunk.mass + sum(getattr(leg, part).mass for leg in self.legs.values() for part in JOINTS)
 
     def per_joint(self, figure: str) -> tuple[float, ...]:
         """A figure of `Joint` for the twelve joints in order, e.g. `per_joint("torque_limit")`."""
