@@ -1,0 +1,117 @@
+"""All components in one process on simulated time: for tests, evaluation and debugging."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from time import perf_counter
+
+from surefoot.bus.codec import check
+from surefoot.bus.message import Message
+from surefoot.bus.messages import OperatorCommand
+from surefoot.bus.topics import PROCESSES
+from surefoot.components.component import Component, Inbox, Outbox
+from surefoot.components.registry import component_class
+from surefoot.components.scheduler import NS, Scheduler
+from surefoot.config.deployment import Deployment
+
+Listener = Callable[[str, Message], None]
+"""Called with (topic, message) when a message becomes visible."""
+
+
+class LocalExecutor:
+    """Steps one component in this process; its output waits until the scheduler collects it."""
+
+    def __init__(self, component: Component, bus: LocalBus):
+        self.component = component
+        self.inbox = Inbox(component.inputs)
+        self.active = False
+        self.step_ms: list[float] = []
+        self._bus = bus
+        self._pending: list[tuple[str, Message]] = []
+        self._outbox = Outbox(component.outputs, lambda key, message: self._pending.append((key, check(message))))
+        self._read = dict.fromkeys(component.inputs, 0)
+
+    def release(self, t_ns: int, visible: dict[str, int]) -> None:
+        for key, count in self._read.items():
+            self._read[key] = self._bus.deliver(key, count, self.inbox)
+        t = t_ns / NS
+        start = perf_counter()
+        if not self.active:
+            self.active = self.component.activate(t, self.inbox)
+        if self.active:
+            self.component.step(t, self.inbox, self._outbox)
+        self.step_ms.append(1e3 * (perf_counter() - start))
+        self.inbox.clear_new()
+
+    def collect(self) -> dict[str, int]:
+        counts: dict[str, int] = {}
+        for key, message in self._pending:
+            self._bus.show(key, message)
+            counts[key] = counts.get(key, 0) + 1
+        self._pending.clear()
+        return counts
+
+
+class LocalBus:
+    """The in-process bus: the visible messages of each topic, kept until every reader has them."""
+
+    def __init__(self) -> None:
+        self.listeners: list[Listener] = []
+        self._recent: dict[str, list[Message]] = {}
+        self._count: dict[str, int] = {}
+
+    def show(self, key: str, message: Message) -> None:
+        """Make a message visible to readers and listeners."""
+        recent = self._recent.setdefault(key, [])
+        recent.append(message)
+        if len(recent) > 64:
+            del recent[:32]
+        self._count[key] = self._count.get(key, 0) + 1
+        for listener in self.listeners:
+            listener(key, message)
+
+    def deliver(self, key: str, read: int, inbox: Inbox) -> int:
+        """Give a reader that has had `read` messages those after it; returns how many it has had now."""
+        count = self._count.get(key, 0)
+        if count > read:
+            for message in self._recent[key][-(count - read) :]:
+                inbox.deliver(key, message)
+        return count
+
+
+class Lockstep:
+    """A whole stack in one process.
+
+    Attributes:
+        components: the components by name.
+        executors: their executors, with the wall time of every step [ms].
+    """
+
+    def __init__(self, deployment: Deployment, names: Iterable[str] = PROCESSES):
+        self.bus = LocalBus()
+        self.components = {name: component_class(name)(deployment) for name in names}
+        self.executors = {name: LocalExecutor(part, self.bus) for name, part in self.components.items()}
+        self.scheduler = Scheduler(self.executors)
+        self._commands = 0
+        for component in self.components.values():
+            component.warm_up()
+
+    @property
+    def t(self) -> float:
+        """Simulated time [s]."""
+        return self.scheduler.t_ns / NS
+
+    def listen(self, listener: Listener) -> None:
+        """Call `listener` with every message that becomes visible."""
+        self.bus.listeners.append(listener)
+
+    def command(self, command: str) -> None:
+        """Give an operator's command now."""
+        message = OperatorCommand(t=self.t, seq=self._commands, valid=True, command=command)
+        self._commands += 1
+        self.bus.show("operator/command", message)
+        self.scheduler.inject("operator/command")
+
+    def run(self, until_s: float, stop: Callable[[], bool] = lambda: False) -> None:
+        """Advance to simulated time `until_s` or until `stop()` holds."""
+        self.scheduler.run_until(round(until_s * NS), stop)
