@@ -1,1 +1,1 @@
-"""The processes of the stack and what several of them share. Imports `bus` and `config`; only `io` imports `hw`."""
+"""The processes of the stack and what they share. Imports `bus` and `config`; only `io` imports `hw`."""
