@@ -27,3 +27,6 @@ class Hw:
     friction_max: float = 0.8
     command_timeout_s: float = 0.050  # older commands damp
     damping_kd: float = 3.0  # joint damping of the safe state [N m s/rad]
+    kp_max: float = 500.0  # larger position gains are refused [N m/rad]
+    kd_max: float = 20.0  # larger velocity gains are refused [N m s/rad]
+    solref_s: float = 0.005  # time constant of contacts; soft defaults sink millimetres [s]

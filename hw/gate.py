@@ -1,0 +1,75 @@
+"""The last check before the motors: a command passes, is limited, or the cycle damps, and the reason is said."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from surefoot.bus.messages import JointCommand
+from surefoot.config.hw import Hw
+from surefoot.config.robot import JOINT_NAMES, Robot
+from surefoot.hw.robot_interface import MotorLaw, damping_law
+
+
+class Gate:
+    """Passes finite, fresh commands inside the limits; everything else damps in the same cycle.
+
+    Attributes:
+        damping: whether the last cycle damped.
+        reason: why it damped or what it limited, with value and limit; empty when nothing was amiss.
+    """
+
+    def __init__(self, robot: Robot, settings: Hw):
+        self._settings = settings
+        self._torque_limit = np.array(robot.per_joint("torque_limit"))
+        self._velocity_limit = np.array(robot.per_joint("velocity_limit"))
+        ranges = np.array(robot.position_range())
+        self._lower, self._upper = ranges[:, 0], ranges[:, 1]
+        self._damp = damping_law(settings.damping_kd)
+        self.damping = True
+        self.reason = "no command yet"
+
+    def law(self, command: JointCommand | None, t: float) -> MotorLaw:
+        """The motor law of a cycle at time `t` [s]."""
+        self.damping, self.reason = True, ""
+        if command is None:
+            self.reason = "no command yet"
+            return self._damp
+        if not command.valid:
+            self.reason = "the whole-body controller does not vouch for its command (valid = false)"
+            return self._damp
+        age = t - command.t
+        if not -1e-9 <= age <= self._settings.command_timeout_s:
+            limit = 1e3 * self._settings.command_timeout_s
+            self.reason = f"command is {1e3 * age:.1f} ms old, limit {limit:.0f} ms: is wbc running?"
+            return self._damp
+        for name in ("q", "dq", "kp", "kd", "tau"):
+            values = getattr(command, name)
+            if np.shape(values) != (12,):
+                self.reason = f"command.{name} has shape {np.shape(values)}, expected (12,)"
+                return self._damp
+            if not np.isfinite(values).all():
+                joint = JOINT_NAMES[int(np.argmin(np.isfinite(values)))]
+                self.reason = f"command.{name} of {joint} is not finite"
+                return self._damp
+        for name, limit in (("kp", self._settings.kp_max), ("kd", self._settings.kd_max)):
+            gains = getattr(command, name)
+            if gains.min() < 0.0 or gains.max() > limit:
+                joint = int(np.argmax(np.maximum(-gains, gains - limit)))
+                self.reason = (
+                    f"command.{name} of {JOINT_NAMES[joint]} = {gains[joint]:.1f}, allowed 0 to {limit:.0f}"
+                )
+                return self._damp
+        self.damping = False
+        return self._limited(command)
+
+    def _limited(self, command: JointCommand) -> MotorLaw:
+        q = np.clip(command.q, self._lower, self._upper)
+        dq = np.clip(command.dq, -self._velocity_limit, self._velocity_limit)
+        tau = np.clip(command.tau, -self._torque_limit, self._torque_limit)
+        for name, given, allowed in (("q", command.q, q), ("dq", command.dq, dq), ("tau", command.tau, tau)):
+            if (given != allowed).any():
+                joint = int(np.argmax(np.abs(given - allowed)))
+                self.reason = (
+                    f"command.{name} of {JOINT_NAMES[joint]} = {given[joint]:.2f} limited to {allowed[joint]:.2f}"
+                )
+        return MotorLaw(q=q, dq=dq, kp=command.kp, kd=command.kd, tau=tau)

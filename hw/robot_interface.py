@@ -1,0 +1,59 @@
+"""What every robot offers: read the sensors, write one motor law per joint.
+
+A cycle in which nothing is written damps: a forgotten command can never keep pushing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """One reading of everything a real Aliengo can say; joints in order FL, FR, RL, RR."""
+
+    q: np.ndarray  # (12,) joint angles [rad]
+    dq: np.ndarray  # (12,) joint velocities [rad/s]
+    tau: np.ndarray  # (12,) motor torque estimates [N m]
+    omega_WB_B: np.ndarray  # (3,) gyroscope [rad/s]
+    acc_B: np.ndarray  # (3,) specific force [m/s^2]
+
+
+@dataclass(frozen=True)
+class MotorLaw:
+    """tau + kp (q - q_measured) + kd (dq - dq_measured), each (12,)."""
+
+    q: np.ndarray  # [rad]
+    dq: np.ndarray  # [rad/s]
+    kp: np.ndarray  # [N m/rad]
+    kd: np.ndarray  # [N m s/rad]
+    tau: np.ndarray  # [N m]
+
+
+def damping_law(kd: float) -> MotorLaw:
+    """The safe state: every joint is braked, none is driven."""
+    zero = np.zeros(12)
+    return MotorLaw(q=zero, dq=zero, kp=zero, kd=np.full(12, kd), tau=zero)
+
+
+class RobotInterface(Protocol):
+    """A robot, simulated or real."""
+
+    def read(self) -> Sensors:
+        """The newest sensor values.
+
+        Raises:
+            HardwareFault: no plausible reading is to be had.
+        """
+
+    def write(self, law: MotorLaw) -> None:
+        """The motor law of this cycle."""
+
+    def advance(self) -> None:
+        """End the cycle: a simulator steps its physics, a driver waits for nothing. Unwritten cycles damp."""
+
+    def close(self) -> None:
+        """Leave the robot damping and free what is held."""
