@@ -1,0 +1,1 @@
+"""The simulated robot: scene, terrains, sensors and motors in MuJoCo, behind the robot interface."""

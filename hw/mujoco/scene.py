@@ -1,0 +1,49 @@
+"""The whole scene: robot, terrain, physics settings."""
+
+from __future__ import annotations
+
+import mujoco
+
+from surefoot.config.deployment import Deployment
+from surefoot.config.robot import GRAVITY, Robot
+from surefoot.hw.mujoco.robot_body import add_robot
+from surefoot.hw.mujoco.terrain import Field, add_terrain
+
+PHYSICS_DT = 0.001
+"""Step of the physics and of the motor law [s]."""
+
+_SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)
+
+
+def build_scene(deployment: Deployment, robot: Robot | None, friction: float) -> tuple[mujoco.MjModel, Field]:
+    """Compile the deployment's terrain and, if given, the robot on it.
+
+    Args:
+        deployment: terrain and contact settings.
+        robot: figures of the plant (varied or nominal), or None for the terrain alone.
+        friction: sliding friction coefficient of every contact.
+    """
+    spec = mujoco.MjSpec()
+    spec.modelname = "surefoot"
+    spec.compiler.degree = False  # joint ranges are radians
+    spec.option.timestep = PHYSICS_DT
+    spec.option.gravity = [0.0, 0.0, -GRAVITY]
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    spec.option.impratio = 10.0
+    spec.visual.global_.offwidth, spec.visual.global_.offheight = 1280, 960
+    spec.worldbody.add_light(pos=[0.5, -1.0, 3.0], dir=[0.0, 0.3, -1.0], castshadow=False)
+    if robot is not None:
+        add_robot(spec, robot)
+        spec.add_sensor(
+            name="acc", type=mujoco.mjtSensor.mjSENS_ACCELEROMETER, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="imu"
+        )
+        spec.add_sensor(
+            name="gyro", type=mujoco.mjtSensor.mjSENS_GYRO, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="imu"
+        )
+    field = add_terrain(spec, deployment.terrain, robot or deployment.load_robot())
+    for geom in spec.geoms:
+        geom.friction = [friction, 0.005, 0.0001]
+        geom.solref = [deployment.hw.solref_s, 1.0]
+        geom.solimp = _SOLIMP
+    return spec.compile(), field
