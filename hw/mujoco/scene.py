@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import mujoco
 
 from surefoot.config.deployment import Deployment
@@ -15,13 +17,19 @@ PHYSICS_DT = 0.001
 _SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)
 
 
-def build_scene(deployment: Deployment, robot: Robot | None, friction: float) -> tuple[mujoco.MjModel, Field]:
+def build_scene(
+    deployment: Deployment,
+    robot: Robot | None,
+    friction: float,
+    extra: Callable[[mujoco.MjSpec], None] | None = None,
+) -> tuple[mujoco.MjModel, Field]:
     """Compile the deployment's terrain and, if given, the robot on it.
 
     Args:
         deployment: terrain and contact settings.
         robot: figures of the plant (varied or nominal), or None for the terrain alone.
         friction: sliding friction coefficient of every contact.
+        extra: adds bodies after the terrain.
     """
     spec = mujoco.MjSpec()
     spec.modelname = "surefoot"
@@ -42,6 +50,8 @@ def build_scene(deployment: Deployment, robot: Robot | None, friction: float) ->
             name="gyro", type=mujoco.mjtSensor.mjSENS_GYRO, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="imu"
         )
     field = add_terrain(spec, deployment.terrain, robot or deployment.load_robot())
+    if extra is not None:
+        extra(spec)
     for geom in spec.geoms:
         geom.friction = [friction, 0.005, 0.0001]
         geom.solref = [deployment.hw.solref_s, 1.0]

@@ -1,0 +1,52 @@
+"""The robot's sensors onto the bus, the gated command to its motors, at 500 Hz."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from surefoot.bus.messages import HardwareState
+from surefoot.components.component import Component, Inbox, Outbox
+from surefoot.config.deployment import Deployment
+from surefoot.hw.gate import Gate
+from surefoot.hw.mujoco.backend import MujocoRobot
+
+
+class Io(Component):
+    """Reads, publishes, gates and writes, then lets the plant advance by one cycle.
+
+    Every command passes the gate in the cycle in which it is applied; a missing, stale or malformed one
+    makes that same cycle damp.
+
+    Attributes:
+        robot: the robot interface in use.
+    """
+
+    name: ClassVar[str] = "io"
+    inputs: ClassVar[tuple[str, ...]] = ("joint/command",)
+    outputs: ClassVar[tuple[str, ...]] = ("hw/state", "sim/truth")
+
+    def __init__(self, deployment: Deployment):
+        super().__init__(deployment)
+        self.robot = MujocoRobot(deployment)
+        self._gate = Gate(deployment.load_robot(), deployment.hw)
+
+    def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        sensors = self.robot.read()
+        law = self._gate.law(inbox.latest("joint/command"), t)
+        outbox.publish(
+            "hw/state",
+            HardwareState(
+                t=t,
+                valid=True,
+                q=sensors.q,
+                dq=sensors.dq,
+                tau=sensors.tau,
+                omega_WB_B=sensors.omega_WB_B,
+                acc_B=sensors.acc_B,
+                damping=self._gate.damping,
+                gate=self._gate.reason,
+            ),
+        )
+        outbox.publish("sim/truth", self.robot.truth())
+        self.robot.write(law)
+        self.robot.advance()

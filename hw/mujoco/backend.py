@@ -1,0 +1,167 @@
+"""The simulated robot: 1 kHz physics and motor law, command delay, sensor noise, truth for grading."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import mujoco
+import numpy as np
+
+from surefoot.bus.messages import SimTruth
+from surefoot.config.deployment import Deployment
+from surefoot.config.robot import LEGS
+from surefoot.hw.errors import HardwareFault
+from surefoot.hw.mujoco.plant import draw_plant, stream
+from surefoot.hw.mujoco.scene import PHYSICS_DT, build_scene
+from surefoot.hw.robot_interface import MotorLaw, Sensors, damping_law
+
+STEPS_PER_CYCLE = 2
+"""Physics steps in one cycle of the interface (500 Hz)."""
+
+
+class MujocoRobot:
+    """A robot in MuJoCo behind the robot interface.
+
+    Physics is split (`mj_step2`, then `mj_step1`), so that between cycles every position and velocity
+    belongs to the present instant; accelerations and contact forces are those of the step just made.
+    """
+
+    def __init__(self, deployment: Deployment):
+        robot = deployment.load_robot()
+        settings = deployment.hw
+        plant = draw_plant(robot, settings)
+        self.model, self.field = build_scene(deployment, plant.robot, plant.friction)
+        self.data = mujoco.MjData(self.model)
+        self._plant, self._settings = plant, settings
+        self._torque_limit = np.array(robot.per_joint("torque_limit"))
+        self._noise = {name: stream(settings.seed, name) for name in ("q", "dq", "tau", "gyro", "acc")}
+        self._damp = damping_law(settings.damping_kd)
+        self._laws: deque[tuple[int, MotorLaw]] = deque()
+        self._law = self._damp
+        self._delay_steps = round(settings.command_delay_s / PHYSICS_DT)
+        self._step = 0
+        self._written = False
+        self._tau = np.zeros(12)
+        self._name_parts()
+        self._spawn(robot, settings.start)
+        mujoco.mj_forward(self.model, self.data)
+        mujoco.mj_step1(self.model, self.data)
+        self._truth_forces = np.zeros((4, 3))
+        self._body_contact = ""
+        self._saturated = False
+
+    @property
+    def t(self) -> float:
+        """Simulated time [s]."""
+        return self._step * PHYSICS_DT
+
+    def read(self) -> Sensors:
+        data, settings = self.data, self._settings
+        if not np.isfinite(data.qpos).all():
+            raise HardwareFault(f"the simulation diverged at {self.t:.3f} s: positions are not finite")
+        noise = {
+            name: rng.standard_normal(12 if name in ("q", "dq", "tau") else 3) for name, rng in self._noise.items()
+        }
+        return Sensors(
+            q=data.qpos[7:19] + settings.encoder_noise * noise["q"],
+            dq=data.qvel[6:18] + settings.velocity_noise * noise["dq"],
+            tau=self._tau + settings.torque_noise * noise["tau"],
+            omega_WB_B=data.sensordata[3:6] + self._plant.gyro_bias + settings.gyro_noise * noise["gyro"],
+            acc_B=data.sensordata[0:3] + self._plant.acc_bias + settings.acc_noise * noise["acc"],
+        )
+
+    def write(self, law: MotorLaw) -> None:
+        self._laws.append((self._step + self._delay_steps, law))
+        self._written = True
+
+    def advance(self) -> None:
+        if not self._written:
+            self.write(self._damp)
+        self._written = False
+        for index in range(STEPS_PER_CYCLE):
+            while self._laws and self._laws[0][0] <= self._step:
+                self._law = self._laws.popleft()[1]
+            self._apply(self._law)
+            mujoco.mj_step2(self.model, self.data)
+            if index == STEPS_PER_CYCLE - 1:
+                self._note_contacts()
+            mujoco.mj_step1(self.model, self.data)
+            self._step += 1
+
+    def close(self) -> None:
+        self._laws.clear()
+        self._law = self._damp
+
+    def truth(self) -> SimTruth:
+        """The simulator's own state at the present instant, for grading only."""
+        data = self.data
+        return SimTruth(
+            t=self.t,
+            valid=True,
+            p_WB=data.qpos[:3].copy(),
+            quat_WB=data.qpos[3:7].copy(),
+            v_WB_W=data.qvel[:3].copy(),
+            omega_WB_B=data.qvel[3:6].copy(),
+            q=data.qpos[7:19].copy(),
+            tau=self._tau.copy(),
+            com_W=data.subtree_com[self._trunk_body].copy(),
+            p_WF=data.geom_xpos[self._foot_geoms].copy(),
+            force_W=self._truth_forces.copy(),
+            body_contact=self._body_contact,
+            saturated=self._saturated,
+            power_w=float(np.abs(self._tau * data.qvel[6:18]).sum()),
+            terrain_q=data.qpos[19:].copy(),
+        )
+
+    def _apply(self, law: MotorLaw) -> None:
+        """The motor law on the true joint state, inside the motors' limits."""
+        q, dq = self.data.qpos[7:19], self.data.qvel[6:18]
+        asked = law.tau + law.kp * (law.q - q) + law.kd * (law.dq - dq)
+        np.clip(asked, -self._torque_limit, self._torque_limit, out=self._tau)
+        self._saturated = bool((asked != self._tau).any())
+        self.data.qfrc_applied[6:18] = self._tau
+
+    def _name_parts(self) -> None:
+        model = self.model
+        self._trunk_body = model.body("trunk").id
+        self._foot_geoms = np.array([model.geom(f"{leg}_foot").id for leg in LEGS])
+        self._foot_of_geom = np.full(model.ngeom, -1)
+        self._foot_of_geom[self._foot_geoms] = np.arange(4)
+        self._robot_geom = model.geom_contype == 1
+        self._geom_names = [model.geom(index).name for index in range(model.ngeom)]
+
+    def _note_contacts(self) -> None:
+        """Force on each foot in the world, and which other parts touch, from the step just made."""
+        data = self.data
+        forces = self._truth_forces
+        forces[:] = 0.0
+        touching: list[str] = []
+        contact = data.contact
+        geoms = contact.geom
+        if len(geoms):
+            # Elliptic cones: a contact's rows of efc_force are its force along the contact frame's axes.
+            address, frames = contact.efc_address, contact.frame
+            for index in range(len(geoms)):
+                if address[index] < 0:
+                    continue
+                first, second = geoms[index]
+                # The frame's first axis points from the first geom to the second, and acts on the second.
+                mine, sign = (second, 1.0) if self._robot_geom[second] else (first, -1.0)
+                foot = self._foot_of_geom[mine]
+                if foot >= 0:
+                    local = data.efc_force[address[index] : address[index] + 3]
+                    forces[foot] += sign * (local @ frames[index].reshape(3, 3))
+                else:
+                    touching.append(self._geom_names[mine])
+        self._body_contact = " ".join(sorted(set(touching))) if touching else ""
+
+    def _spawn(self, robot, start: str) -> None:
+        """Put the robot at x = y = 0, its feet (or belly) on the surface z = 0."""
+        posture = robot.nominal.stand_q if start == "standing" else robot.nominal.lie_q
+        data = self.data
+        data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+        data.qpos[7:19] = np.tile(posture, 4)
+        mujoco.mj_kinematics(self.model, data)
+        lowest = data.geom_xpos[self._foot_geoms, 2].min() - robot.foot.radius
+        belly = -0.5 * robot.collision["trunk"].size[2]
+        data.qpos[2] = -min(lowest, belly)

@@ -1,0 +1,47 @@
+"""The io component: sensors out, gated commands in, and never the truth to a controller."""
+
+import numpy as np
+
+from surefoot.bus.messages import JointCommand
+from surefoot.components.component import Inbox, Outbox
+from surefoot.components.io.io import Io
+from surefoot.config.deployment import Deployment
+from surefoot.config.robot import load_robot
+
+
+def run(io, cycles, command=None):
+    published = []
+    inbox, outbox = Inbox(io.inputs), Outbox(io.outputs, lambda key, message: published.append((key, message)))
+    for cycle in range(cycles):
+        t = 0.002 * cycle
+        if command is not None:
+            inbox.deliver("joint/command", command(t))
+        io.step(t, inbox, outbox)
+    return published
+
+
+def hold(t):
+    q = np.tile(load_robot("aliengo").nominal.stand_q, 4)
+    return JointCommand(t=t, valid=True, q=q, kp=np.full(12, 300.0), kd=np.full(12, 8.0))
+
+
+def test_every_cycle_says_what_the_sensors_and_the_gate_saw():
+    published = run(Io(Deployment()), 3, hold)
+    assert [key for key, _ in published] == ["hw/state", "sim/truth"] * 3
+    state = published[-2][1]
+    assert state.t == 0.004 and state.valid and not state.damping
+
+
+def test_without_a_controller_the_robot_damps_and_says_why():
+    published = run(Io(Deployment()), 5)
+    state = published[-2][1]
+    assert state.damping and state.gate == "no command yet"
+
+
+def test_a_malformed_command_damps_that_cycle():
+    def broken(t):
+        command = hold(t)
+        return JointCommand(t=t, valid=True, q=command.q, kp=np.full(12, np.nan), kd=command.kd)
+
+    state = run(Io(Deployment()), 5, broken)[-2][1]
+    assert state.damping and "command.kp of FL_hip is not finite" in state.gate

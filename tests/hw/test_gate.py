@@ -1,0 +1,71 @@
+"""The gate lets only safe commands near the motors, and says why it refuses."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from surefoot.bus.messages import JointCommand
+from surefoot.config.hw import Hw
+from surefoot.config.robot import load_robot
+from surefoot.hw.gate import Gate
+
+ROBOT = load_robot("aliengo")
+GOOD = JointCommand(
+    t=1.0,
+    valid=True,
+    q=np.tile(ROBOT.nominal.stand_q, 4),
+    kp=np.full(12, 10.0),
+    kd=np.ones(12),
+    tau=np.full(12, 3.0),
+)
+
+
+@pytest.fixture
+def gate():
+    return Gate(ROBOT, Hw())
+
+
+def test_a_good_command_passes_unchanged(gate):
+    law = gate.law(GOOD, 1.01)
+    assert not gate.damping and gate.reason == ""
+    for name in ("q", "dq", "kp", "kd", "tau"):
+        np.testing.assert_array_equal(getattr(law, name), getattr(GOOD, name))
+
+
+def with_entry(name, index, value):
+    values = getattr(GOOD, name).copy()
+    values[index] = value
+    return dataclasses.replace(GOOD, **{name: values})
+
+
+@pytest.mark.parametrize(
+    ("command", "t", "said"),
+    [
+        (None, 1.0, "no command yet"),
+        (dataclasses.replace(GOOD, valid=False), 1.0, "does not vouch"),
+        (GOOD, 1.2, "200.0 ms old, limit 50 ms"),
+        (GOOD, 0.5, "ms old"),
+        (with_entry("tau", 4, np.nan), 1.0, "command.tau of FR_thigh is not finite"),
+        (with_entry("kp", 2, 900.0), 1.0, "command.kp of FL_calf = 900.0, allowed 0 to 500"),
+        (with_entry("kd", 2, -1.0), 1.0, "command.kd of FL_calf = -1.0"),
+        (dataclasses.replace(GOOD, q=np.zeros(11)), 1.0, "command.q has shape"),
+    ],
+)
+def test_everything_else_damps_in_the_same_cycle_and_is_named(gate, command, t, said):
+    law = gate.law(command, t)
+    assert gate.damping and said in gate.reason
+    assert not law.kp.any() and not law.tau.any() and (law.kd == Hw().damping_kd).all()
+
+
+def test_torques_and_angles_beyond_the_limits_are_limited_and_named(gate):
+    law = gate.law(with_entry("tau", 11, 99.0), 1.0)
+    assert law.tau[11] == 44.4 and "RR_calf = 99.00 limited to 44.40" in gate.reason
+    assert gate.law(with_entry("q", 2, 0.0), 1.0).q[2] == pytest.approx(-0.645771823)
+    assert not gate.damping
+
+
+def test_it_recovers_with_the_next_good_command(gate):
+    gate.law(None, 0.0)
+    gate.law(GOOD, 1.0)
+    assert not gate.damping
