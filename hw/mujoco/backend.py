@@ -18,6 +18,9 @@ from surefoot.hw.robot_interface import MotorLaw, Sensors, damping_law
 STEPS_PER_CYCLE = 2
 """Physics steps in one cycle of the interface (500 Hz)."""
 
+_SETTLE_S = 0.5
+_HOLD_KP, _HOLD_KD = 300.0, 8.0  # [N m/rad], [N m s/rad]: stiff enough to sag by millimetres only
+
 
 class MujocoRobot:
     """A robot in MuJoCo behind the robot interface.
@@ -43,12 +46,11 @@ class MujocoRobot:
         self._written = False
         self._tau = np.zeros(12)
         self._name_parts()
-        self._spawn(robot, settings.start)
-        mujoco.mj_forward(self.model, self.data)
-        mujoco.mj_step1(self.model, self.data)
         self._truth_forces = np.zeros((4, 3))
         self._body_contact = ""
         self._saturated = False
+        self._spawn(robot, settings.start)
+        self._settle()
 
     @property
     def t(self) -> float:
@@ -165,3 +167,18 @@ class MujocoRobot:
         lowest = data.geom_xpos[self._foot_geoms, 2].min() - robot.foot.radius
         belly = -0.5 * robot.collision["trunk"].size[2]
         data.qpos[2] = -min(lowest, belly)
+        mujoco.mj_forward(self.model, data)
+
+    def _settle(self) -> None:
+        """Hold the posture until it rests: a run starts with a robot that stands or lies still."""
+        one = np.ones(12)
+        hold = MotorLaw(
+            q=self.data.qpos[7:19].copy(), dq=0 * one, kp=_HOLD_KP * one, kd=_HOLD_KD * one, tau=0 * one
+        )
+        for _ in range(round(_SETTLE_S / PHYSICS_DT)):
+            self._apply(hold)
+            mujoco.mj_step2(self.model, self.data)
+            mujoco.mj_step1(self.model, self.data)
+        self.data.qpos[:2] = 0.0
+        self.data.time = 0.0
+        mujoco.mj_step1(self.model, self.data)

@@ -1,0 +1,154 @@
+"""The estimator's process: 500 Hz, one estimate for every reading of the sensors."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+
+from surefoot.bus.messages import HardwareState, LegStatus, StateEstimate
+from surefoot.bus.topics import TOPICS
+from surefoot.components.component import Component, Inbox, Outbox
+from surefoot.components.estimator.contact_aided_filter import ContactAidedFilter
+from surefoot.components.estimator.contact_detector import ContactDetector
+from surefoot.components.estimator.contact_force import ContactForce
+from surefoot.components.estimator.surface_normal import SurfaceNormal
+from surefoot.components.robot_model import LegKinematics
+from surefoot.components.robot_model.rotation import quaternion_of, skew
+from surefoot.config.deployment import Deployment
+from surefoot.config.robot import GRAVITY
+
+_MAX_GAP_S = 0.02
+_REST_TOLERANCE = 1.0  # [m/s^2]
+
+
+class Estimator(Component):
+    """Base and feet from IMU, encoders and torque estimates.
+
+    A foot holds the base only if eq. (7) says that it is in contact and the state machine does not know
+    better: on ground that is being probed its covariance is inflated, and while it swings or collapses it
+    is not used at all.
+    """
+
+    name: ClassVar[str] = "estimator"
+    inputs: ClassVar[tuple[str, ...]] = ("hw/state", "fsm/reference")
+    outputs: ClassVar[tuple[str, ...]] = ("state/estimate",)
+
+    def __init__(self, deployment: Deployment):
+        super().__init__(deployment)
+        robot = deployment.load_robot()
+        self._settings = deployment.estimator
+        self._legs = LegKinematics(robot)
+        self._foot_radius = robot.foot.radius
+        self._filter = ContactAidedFilter(self._settings)
+        self._force = ContactForce(robot, self._settings.friction_speed)
+        self._detector = ContactDetector(self._settings)
+        self._normal = SurfaceNormal(self._settings)
+        dt = 1.0 / TOPICS["hw/state"].rate_hz
+        self._dt = dt
+        self._force_gain = 1.0 - np.exp(-2.0 * np.pi * self._settings.force_filter_hz * dt)
+        self._force_B = np.zeros((4, 3))
+        self._contact_WF = np.zeros((4, 3))
+        self._last_t: float | None = None
+
+    def activate(self, t: float, inbox: Inbox) -> bool:
+        return self._last_t is not None or not self.waiting_for(t, inbox)
+
+    def waiting_for(self, t: float, inbox: Inbox) -> str:
+        state = inbox.fresh("hw/state", t)
+        if state is None:
+            return "no fresh message on hw/state: is io running?"
+        g = float(np.sqrt(state.acc_B @ state.acc_B))
+        if abs(g - GRAVITY) > _REST_TOLERANCE:
+            return f"accelerometer reads {g:.1f} m/s^2, not {GRAVITY}: the robot must rest before tilt can be told"
+        return ""
+
+    def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        state = inbox.fresh("hw/state", t)
+        if state is None:
+            return
+        q, dq = state.q.reshape(4, 3), state.dq.reshape(4, 3)
+        p_BF, J_B = self._legs.position(q), self._legs.jacobian(q)
+        if self._last_t is None:
+            self._begin(state, p_BF)
+        else:
+            dt = min(max(state.t - self._last_t, 1e-4), _MAX_GAP_S)
+            self._filter.predict(state.omega_WB_B, state.acc_B, dt)
+        self._last_t = state.t
+        contact, force_W = self._contacts(state, J_B)
+        reference = inbox.fresh("fsm/reference", t)
+        status = reference.leg_status if reference is not None else np.full(4, LegStatus.STANCE)
+        probing = status == LegStatus.PROBING
+        stance = contact & ((status == LegStatus.STANCE) | probing)
+        rate = np.where(probing, self._settings.probing_rate, self._settings.stance_rate)
+        self._filter.update(p_BF, J_B, stance, rate, self._dt)
+        healthy = self._guard(state, p_BF)
+        self._publish(state, p_BF, J_B, dq, contact, force_W, healthy, outbox)
+
+    def snapshot(self) -> dict[str, Any]:
+        f = self._filter
+        return {
+            "p_WB": f.p_WB, "v_WB_W": f.v_WB_W, "R_WB": f.R_WB, "p_WF": f.p_WF,
+            "bias_gyro": f.bias_gyro, "bias_acc": f.bias_acc, "P": f.P,
+            "contact": self._detector.contact, "contact_WF": self._contact_WF, "force_B": self._force_B, "t": self._last_t,
+        }  # fmt: skip
+
+    def restore(self, state: dict[str, Any]) -> None:
+        for name in ("p_WB", "v_WB_W", "R_WB", "p_WF", "bias_gyro", "bias_acc", "P"):
+            getattr(self._filter, name)[:] = state[name]
+        self._detector.assume(state["contact"])
+        self._contact_WF = np.array(state["contact_WF"])
+        self._force_B = np.array(state["force_B"])
+        self._last_t = float(state["t"])
+
+    def _begin(self, state: HardwareState, p_BF: np.ndarray) -> None:
+        self._filter.start(state.acc_B, p_BF, self._foot_radius)
+        self._detector.assume(np.ones(4, bool))
+        self._contact_WF = self._filter.p_WB + p_BF @ self._filter.R_WB.T
+
+    def _contacts(self, state: HardwareState, J_B: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Contact flags (4,) and filtered forces in the world (4, 3) [N], eq. (7)."""
+        f = self._filter
+        bias = self._force.bias(f.R_WB, quaternion_of(f.R_WB), f.omega_B, state.q, state.dq)
+        force_B = self._force.force(J_B, state.tau, bias)
+        self._force_B = self._force_B + self._force_gain * (force_B - self._force_B)
+        force_W = self._force_B @ f.R_WB.T
+        return self._detector.update(force_W @ self._normal.normal_W), force_W
+
+    def _guard(self, state: HardwareState, p_BF: np.ndarray) -> bool:
+        """False, after starting again at the last position, when the filter has diverged."""
+        f, limit = self._filter, self._settings.position_limit
+        uncertain = f.P[[2, 6, 7], [2, 6, 7]]
+        if np.isfinite(f.p_WB).all() and np.isfinite(uncertain).all() and (uncertain < limit * limit).all():
+            return True
+        position = np.where(np.isfinite(f.p_WB), f.p_WB, 0.0)
+        f.start(state.acc_B, p_BF, self._foot_radius)
+        f.p_WB[:] = position
+        return False
+
+    def _publish(self, state, p_BF, J_B, dq, contact, force_W, healthy, outbox: Outbox) -> None:
+        f = self._filter
+        p_WF = f.p_WB + p_BF @ f.R_WB.T
+        self._contact_WF[contact] = p_WF[contact]
+        rotating_B = p_BF @ skew(f.omega_B).T
+        v_WF = f.v_WB_W + (rotating_B + (J_B @ dq[..., None])[..., 0]) @ f.R_WB.T
+        outbox.publish(
+            "state/estimate",
+            StateEstimate(
+                t=state.t,
+                valid=healthy,
+                p_WB=f.p_WB.copy(),
+                quat_WB=quaternion_of(f.R_WB),
+                v_WB_W=f.v_WB_W.copy(),
+                omega_WB_B=f.omega_B,
+                q=state.q,
+                dq=state.dq,
+                p_WF=p_WF,
+                v_WF=v_WF,
+                force_W=force_W,
+                contact=contact,
+                normal_W=self._normal.update(self._contact_WF),
+                covariance=f.P[:9, :9].copy(),
+                foot_std_m=np.sqrt(np.maximum(np.diagonal(f.P)[9:21], 0.0)).reshape(4, 3),
+            ),
+        )
