@@ -90,7 +90,8 @@ class Estimator(Component):
         return {
             "p_WB": f.p_WB, "v_WB_W": f.v_WB_W, "R_WB": f.R_WB, "p_WF": f.p_WF,
             "bias_gyro": f.bias_gyro, "bias_acc": f.bias_acc, "P": f.P,
-            "contact": self._detector.contact, "contact_WF": self._contact_WF, "force_B": self._force_B, "t": self._last_t,
+            "contact": self._detector.contact, "contact_WF": self._contact_WF,
+            "force_B": self._force_B, "t": self._last_t,
         }  # fmt: skip
 
     def restore(self, state: dict[str, Any]) -> None:

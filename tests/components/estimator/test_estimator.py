@@ -104,7 +104,7 @@ class Loop:
         self.p_BF = LEGS.position(STAND_Q.reshape(4, 3))
         self.cycle = 0
 
-    def step(self, offset=np.zeros(3), phi=np.zeros(3), status=None):
+    def step(self, offset, phi, status=None):
         t = 0.002 * self.cycle
         self.cycle += 1
         q, _ = LEGS.inverse((self.p_BF - offset) @ exp_rotation(phi))
