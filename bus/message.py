@@ -36,9 +36,7 @@ class FieldSpec:
     volatile: bool = False
 
 
-def number(
-    doc: str, unit: str = "", default: float = 0.0, finite: bool = True, volatile: bool = False
-) -> Any:
+def number(doc: str, unit: str = "", default: float = 0.0, finite: bool = True, volatile: bool = False) -> Any:
     """A float field."""
     spec = FieldSpec("number", unit=unit, doc=doc, finite=finite, volatile=volatile)
     return dataclasses.field(default=default, metadata={"spec": spec})

@@ -128,9 +128,7 @@ class MotionReference(Message):
     swing_v_touch: float = number("speed against the normal at touch-down and after", "m/s")
     swing_lands: bool = flag("contact is meant to follow", default=True)
 
-    support_leg: int = integer(
-        "leg left out of the support polygon of eq. (5); -1 constraint off", default=-1
-    )
+    support_leg: int = integer("leg left out of the support polygon of eq. (5); -1 constraint off", default=-1)
     support_t0: float = number("eq. (5) is active from here on", "s")
     support_t1: float = number("and until here", "s")
     support_margin_m: float = number("alpha of eq. (5)", "m")
@@ -161,9 +159,7 @@ class Policy(Message):
     contact: np.ndarray = array(-1, 4, doc="planned contact of the N+1 nodes", dtype="bool")
     solver: str = text("'ok', or what failed by name")
     constraint: tuple[str, ...] = names("names of the constraints in `violation`")
-    violation: np.ndarray = array(
-        -1, doc="largest violation of each constraint over the horizon, in its unit"
-    )
+    violation: np.ndarray = array(-1, doc="largest violation of each constraint over the horizon, in its unit")
     stage: tuple[str, ...] = names("names of the stages in `stage_ms`")
     stage_ms: np.ndarray = array(-1, doc="wall time of each stage of this tick", unit="ms", volatile=True)
 
@@ -190,9 +186,7 @@ class Plan(Message):
     id: int = integer("of the request")
     status: str = text("'ok', or what failed by name")
     footholds_WF: np.ndarray = array(4, 3, doc="touch-down positions", unit="m")
-    envelope_W: np.ndarray = array(
-        6, 3, doc="full force vectors at the extrema, by rising normal force", unit="N"
-    )
+    envelope_W: np.ndarray = array(6, 3, doc="full force vectors at the extrema, by rising normal force", unit="N")
     dt: float = number("interval", "s")
     x: np.ndarray = array(-1, 24, doc="states as in Policy")
     u: np.ndarray = array(-1, 24, doc="inputs as in Policy")

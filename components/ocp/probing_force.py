@@ -1,0 +1,42 @@
+"""Eq. (6): while it probes, a foot presses with the asked force."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from surefoot.components.ocp.relaxed_barrier import RelaxedBarrier
+from surefoot.components.ocp.term import Nodes, add_force_rows
+
+
+class ProbingForce:
+    """f_i = f_i^p as two inequalities, f - f^p >= 0 and f^p - f >= 0, each component; Table I: mu = delta = 0.7.
+
+    Near zero the pair is about (mu / delta^2) e^2: soft on purpose, since eq. (5) opposes it.
+    """
+
+    name = "probing_force"
+
+    def __init__(self, barrier: RelaxedBarrier):
+        self._barrier = barrier
+
+    def value(self, nodes: Nodes) -> np.ndarray:
+        active, error = self._error(nodes)
+        both = self._barrier.value(error) + self._barrier.value(-error)
+        return (active[..., None] * both).sum(axis=(1, 2))
+
+    def add(self, nodes: Nodes, H: np.ndarray, g: np.ndarray) -> None:
+        active, error = self._error(nodes)
+        if not active.any():
+            return
+        slope = active[..., None] * (self._barrier.gradient(error) - self._barrier.gradient(-error))
+        bend = active[..., None] * (self._barrier.hessian(error) + self._barrier.hessian(-error))
+        add_force_rows(nodes, slope, bend[..., None] * np.eye(3), H, g)
+
+    def violation(self, nodes: Nodes) -> float:
+        active, error = self._error(nodes)
+        return float(np.abs(error * active[..., None]).max(initial=0.0))
+
+    def _error(self, nodes: Nodes) -> tuple[np.ndarray, np.ndarray]:
+        reference, N = nodes.reference, nodes.N
+        active = (reference.probe_leg[:N, None] == np.arange(4)) & reference.contact[:N]
+        return active, nodes.iterate.force_W - reference.probe_force_W[:N, None]

@@ -1,0 +1,55 @@
+"""Weights and barriers of the optimal control problem, eqs. (1)-(6) and Table I."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+Vector3 = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Barrier:
+    """Relaxed log-barrier of Table I."""
+
+    mu: float
+    delta: float  # in the constraint's unit
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Eq. (2); per node, without a factor of the interval. Base weights are shared by mpc and trajopt."""
+
+    linear_momentum: Vector3 = (15.0, 15.0, 30.0)  # of h/m [1/(m/s)^2]
+    angular_momentum: Vector3 = (10.0, 30.0, 30.0)  # of h/m [1/(m^2/s)^2]
+    # Softer position weights let the support polygon's barrier carry the base to the analytic centre.
+    base_position: Vector3 = (2e4, 2e4, 2e4)  # [1/m^2]
+    base_rotation: Vector3 = (1000.0, 3000.0, 3000.0)  # [1/rad^2]
+    joints: Vector3 = (2.0, 2.0, 1.0)  # hip, thigh, calf [1/rad^2]
+    force: float = 1e-3  # [1/N^2]
+    joint_velocity: Vector3 = (0.02, 0.02, 0.01)  # [1/(rad/s)^2]
+    foot_position: float = 2000.0  # W_p; a soft one lets the base drag the swing foot [1/m^2]
+    foot_velocity: float = 10.0  # W_v [1/(m/s)^2]
+    terminal_scale: float = 10.0  # of momentum and base at the last node; 0 is the paper's (1a)
+
+
+@dataclass(frozen=True)
+class Ocp:
+    """The problem that mpc and trajopt share."""
+
+    weights: Weights = field(default_factory=Weights)
+    friction_cone: Barrier = Barrier(10.0, 0.1)  # [N]
+    foot_placement: Barrier = Barrier(0.1, 0.005)  # [m]
+    joint_position: Barrier = Barrier(0.1, 0.01)  # [rad]
+    joint_velocity: Barrier = Barrier(0.1, 0.1)  # [rad/s]
+    force_limits: Barrier = Barrier(1.0, 0.5)  # [N]
+    # Table I has mu = 100: in metres a centring force of kilonewtons; 10 keeps the margin above 40 mm.
+    support_polygon: Barrier = Barrier(10.0, 0.02)  # [m]
+    probing_force: Barrier = Barrier(0.7, 0.7)  # [N]
+    friction: float = 0.5  # mu_c of eq. (3)
+    cone_regularisation_n2: float = 4.0  # rounds the cone's tip; asks f_n of at least its root over mu_c
+    force_min_n: float = 5.0
+    force_max_n: float = 240.0
+    joint_velocity_limit: float = 8.0  # [rad/s], far inside the motors' own
+    swing_height_gain: float = 20.0  # feedback of a swing foot's height error [1/s]
+    step_force_n: float = 150.0  # a full Newton step diverges at events: larger ones are scaled down
+    step_state: float = 0.4
