@@ -1,0 +1,1 @@
+"""How feet move between footholds; mpc, trajopt and wbc follow the same curve."""
