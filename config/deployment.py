@@ -9,6 +9,8 @@ from typing import Literal
 
 from surefoot.config.estimator import Estimator
 from surefoot.config.hw import Hw
+from surefoot.config.mpc import Mpc
+from surefoot.config.ocp import Ocp
 from surefoot.config.robot import Robot, load_robot
 from surefoot.config.terrain import Terrain
 from surefoot.config.typed_toml import build, read_toml, with_override
@@ -34,6 +36,8 @@ class Deployment:
     hw: Hw = field(default_factory=Hw)
     terrain: Terrain = field(default_factory=Terrain)
     estimator: Estimator = field(default_factory=Estimator)
+    ocp: Ocp = field(default_factory=Ocp)
+    mpc: Mpc = field(default_factory=Mpc)
     wbc: Wbc = field(default_factory=Wbc)
 
     def load_robot(self) -> Robot:

@@ -15,7 +15,6 @@ from surefoot.components.ocp.centroidal_dynamics import (
     POSITION,
     ROTATION,
     CentroidalDynamics,
-    Linearisation,
     Trajectory,
     exp_rotations,
     log_rotations,
@@ -75,13 +74,13 @@ class Step:
 
     Attributes:
         iterate: the new trajectory.
-        linear: linearisation about the old one.
+        nodes: the old one with its linearisation.
         scale: share of the full Newton step that was taken.
         size: largest state change of the full step.
     """
 
     iterate: Trajectory
-    linear: Linearisation
+    nodes: Nodes
     scale: float
     size: float
 
@@ -197,7 +196,7 @@ class Problem:
         )
         if not np.isfinite(new.v).all():
             raise SolverFailed("sqp: the step is not finite; start again from the reference")
-        return Step(new, linear, scale, size)
+        return Step(new, nodes, scale, size)
 
     def _admissible(self, force_W: np.ndarray, reference: NodeReference) -> np.ndarray:
         """Forces clipped to the limits and the cone; the defects of the next iteration absorb the change."""

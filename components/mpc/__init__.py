@@ -1,0 +1,1 @@
+"""The model predictive controller: one SQP iteration of the shared problem at every tick."""

@@ -1,0 +1,112 @@
+"""The state machine's motion reference, sampled at the problem's nodes (Sec. II-B.3)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from surefoot.bus.messages import MotionReference
+from surefoot.components.gait.swing_spline import SwingSpline
+from surefoot.components.ocp.node_reference import NodeReference
+from surefoot.components.robot_model import LegKinematics
+from surefoot.config.robot import GRAVITY, Robot
+
+
+class MotionSampler:
+    """Makes a `NodeReference` over N intervals of `dt` from what the state machine asks.
+
+    Attributes:
+        legs: the robot's leg kinematics.
+    """
+
+    def __init__(self, robot: Robot, N: int, dt: float):
+        self.legs = LegKinematics(robot)
+        self._weight = robot.mass * GRAVITY
+        self._offsets = dt * np.arange(N + 1)
+        self._dt = dt
+
+    def sample(self, reference: MotionReference, t: float) -> NodeReference:
+        """The references at t, t + dt, ..., t + N dt."""
+        times = t + self._offsets
+        nodes = len(times)
+        contact = np.ones((nodes, 4), bool)
+        p_WF = np.tile(reference.p_WF, (nodes, 1, 1))
+        v_WF = np.zeros((nodes, 4, 3))
+        leg = reference.swing_leg
+        if leg >= 0:
+            self._swing(reference, times, leg, contact, p_WF, v_WF)
+        p_WB, R_WB = self._base(reference, times)
+        p_BF = (p_WF - p_WB[:, None]) @ R_WB
+        force_W = np.zeros((nodes, 4, 3))
+        force_W[..., 2] = contact * (self._weight / contact.sum(axis=1))[:, None]
+        supported = (times >= reference.support_t0) & (times < reference.support_t1)
+        probe_leg, probe_force_W = self._probe(reference, times, contact)
+        return NodeReference(
+            t=times,
+            dt=self._dt,
+            contact=contact,
+            p_WB=p_WB,
+            R_WB=R_WB,
+            q=self.legs.inverse(p_BF)[0],
+            p_WF=p_WF,
+            v_WF=v_WF,
+            force_W=force_W,
+            normal_W=reference.normal_W,
+            support_leg=np.where(supported, reference.support_leg, -1),
+            support_margin_m=reference.support_margin_m,
+            probe_leg=probe_leg,
+            probe_force_W=probe_force_W,
+            region_a=_NO_REGION_A,
+            region_b=_NO_REGION_B,
+            region_active=np.zeros((nodes, 4), bool),
+        )
+
+    @staticmethod
+    def _swing(reference, times, leg, contact, p_WF, v_WF) -> None:
+        spline = SwingSpline(reference)
+        in_air = times >= reference.swing_t0
+        if reference.swing_lands:
+            in_air &= times < reference.swing_t1
+            p_WF[times >= reference.swing_t1, leg] = reference.swing_to
+        contact[in_air, leg] = False
+        if in_air.any():
+            position, velocity, _ = spline.sample(times[in_air])
+            p_WF[in_air, leg], v_WF[in_air, leg] = position, velocity
+
+    @staticmethod
+    def _base(reference: MotionReference, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Linear interpolation between two poses, as the paper has it."""
+        duration = max(reference.base_t1 - reference.base_t0, 1e-6)
+        share = np.clip((times - reference.base_t0) / duration, 0.0, 1.0)[:, None]
+        pose = reference.base_from + share * (reference.base_to - reference.base_from)
+        return pose[:, :3], matrices_of_rpy(pose[:, 3:])
+
+    @staticmethod
+    def _probe(
+        reference: MotionReference, times: np.ndarray, contact: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Eq. (6): each force for its dwell, reached by a linear blend from the one before it."""
+        nodes = len(times)
+        forces = reference.probe_force_W
+        if reference.probe_leg < 0 or len(forces) < 2:
+            return np.full(nodes, -1), np.zeros((nodes, 3))
+        dwell = max(reference.probe_dwell_s, 1e-6)
+        since = times - reference.probe_t0
+        index = np.floor(since / dwell).astype(int)
+        active = (index >= 0) & (index < len(forces) - 1) & contact[:, reference.probe_leg]
+        index = np.clip(index, 0, len(forces) - 2)
+        blend = np.clip((since - index * dwell) / max(reference.probe_blend_s, 1e-6), 0.0, 1.0)[:, None]
+        force = forces[index] + blend * (forces[index + 1] - forces[index])
+        return np.where(active, reference.probe_leg, -1), force
+
+
+def matrices_of_rpy(rpy: np.ndarray) -> np.ndarray:
+    """(n, 3, 3) R = Rz(yaw) Ry(pitch) Rx(roll) of (n, 3) angles."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy).T, np.sin(rpy).T
+    R = np.empty((len(rpy), 3, 3))
+    R[:, 0, 0], R[:, 0, 1], R[:, 0, 2] = cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr
+    R[:, 1, 0], R[:, 1, 1], R[:, 1, 2] = sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr
+    R[:, 2, 0], R[:, 2, 1], R[:, 2, 2] = -sp, cp * sr, cp * cr
+    return R
+
+
+_NO_REGION_A, _NO_REGION_B = np.zeros((4, 4, 3)), np.zeros((4, 4))

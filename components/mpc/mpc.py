@@ -1,0 +1,152 @@
+"""The MPC's process: from estimate and reference to a policy, at every tick (Sec. II-C)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from time import perf_counter
+from typing import ClassVar
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.bus.messages import ControlMode, MotionReference, Policy, StateEstimate
+from surefoot.components.component import Component, Inbox, Outbox
+from surefoot.components.mpc.motion_sampler import MotionSampler
+from surefoot.components.ocp.centroidal_dynamics import Trajectory, exp_rotations, log_rotations
+from surefoot.components.ocp.node_reference import NodeReference
+from surefoot.components.ocp.problem import Problem, State
+from surefoot.components.ocp.riccati import SolverFailed
+from surefoot.components.robot_model import build_model
+from surefoot.components.robot_model.rotation import matrix_of
+from surefoot.config.deployment import Deployment
+
+
+class Mpc(Component):
+    """One SQP iteration a tick, warm-started by shifting the last trajectory by the time that has passed.
+
+    A solver that fails is reported by name in an invalid policy, and the next tick starts cold.
+    """
+
+    name: ClassVar[str] = "mpc"
+    inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "fsm/reference")
+    outputs: ClassVar[tuple[str, ...]] = ("mpc/policy",)
+
+    def __init__(self, deployment: Deployment):
+        super().__init__(deployment)
+        robot, settings = deployment.load_robot(), deployment.mpc
+        self._dt = settings.interval_s
+        self._problem = Problem(deployment.ocp, robot, settings.intervals)
+        self._sampler = MotionSampler(robot, settings.intervals, settings.interval_s)
+        self._model = build_model(robot)
+        self._data = self._model.createData()
+        self._mass = robot.mass
+        self._stand_q = np.tile(robot.nominal.stand_q, 4)
+        self._height = robot.nominal.leg_height
+        self._iterate: Trajectory | None = None
+        self._contact: np.ndarray | None = None
+        self._t = 0.0
+
+    def warm_up(self) -> None:
+        """One solve for a standing robot: the first real tick is as fast as any."""
+        pose = np.array([0.0, 0.0, self._height, 0.0, 0.0, 0.0])
+        legs = self._sampler.legs.position(self._stand_q.reshape(4, 3))
+        reference = MotionReference(
+            base_from=pose, base_to=pose, p_WF=pose[:3] + legs, normal_W=np.array([0.0, 0.0, 1.0])
+        )
+        nodes = self._sampler.sample(reference, 0.0)
+        state = State(np.zeros(6), pose[:3], np.eye(3), self._stand_q.reshape(4, 3))
+        self._problem.converge(nodes, state, 2, 0.0)
+
+    def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        estimate, reference = inbox.fresh("state/estimate", t), inbox.fresh("fsm/reference", t)
+        if estimate is None or reference is None or reference.mode != ControlMode.BALANCE:
+            self._iterate = None
+            return
+        marks = [perf_counter()]
+        nodes = self._sampler.sample(reference, t)
+        measured = self.measured(estimate)
+        start = self._warm_start(nodes, t)
+        marks.append(perf_counter())
+        try:
+            step = self._problem.iterate(start, nodes, measured)
+        except SolverFailed as error:
+            self._iterate = None
+            outbox.publish("mpc/policy", Policy(t=t, dt=self._dt, solver=str(error)))
+            return
+        marks.append(perf_counter())
+        self._iterate, self._contact, self._t = step.iterate, nodes.contact, t
+        self._publish(t, nodes, step, marks, outbox)
+
+    def measured(self, estimate: StateEstimate) -> State:
+        """The state x of an estimate: momentum from the base's and the joints' velocities."""
+        R = matrix_of(estimate.quat_WB)
+        w, x, y, z = estimate.quat_WB
+        q = np.concatenate([estimate.p_WB, [x, y, z, w], estimate.q])
+        v = np.concatenate([R.T @ estimate.v_WB_W, estimate.omega_WB_B, estimate.dq])
+        h = pin.computeCentroidalMomentum(self._model, self._data, q, v).vector / self._mass
+        return State(h, np.array(estimate.p_WB), R, estimate.q.reshape(4, 3))
+
+    def _warm_start(self, nodes: NodeReference, t: float) -> Trajectory:
+        """The last trajectory at the new nodes; where a leg's contact has changed, the reference's input."""
+        old = self._iterate
+        if old is None:
+            return self._problem.cold_start(nodes)
+        N = self._problem.N
+        position = np.clip(np.arange(N + 1) + (t - self._t) / self._dt, 0.0, N)
+        low = np.minimum(position.astype(int), N - 1)
+        share = position - low
+        held = np.minimum(position.astype(int)[:N], N - 1)
+
+        def between(values: np.ndarray) -> np.ndarray:
+            weight = share.reshape(-1, *(1,) * (values.ndim - 1))
+            return values[low] + weight * (values[low + 1] - values[low])
+
+        turn = log_rotations(old.R_WB[low].swapaxes(1, 2) @ old.R_WB[low + 1])
+        same = (self._contact[held] == nodes.contact[:N])[..., None]
+        contact = nodes.contact[:N, :, None]
+        cold_velocity = np.where(contact, 0.0, nodes.v_WF[:N])
+        return replace(
+            old,
+            h=between(old.h),
+            p_WB=between(old.p_WB),
+            R_WB=old.R_WB[low] @ exp_rotations(share[:, None] * turn),
+            q=between(old.q),
+            force_W=np.where(same, old.force_W[held], contact * nodes.force_W[:N]),
+            foot_velocity_W=np.where(same, old.foot_velocity_W[held], cold_velocity),
+            v=old.v[held],
+        )
+
+    def _publish(self, t: float, nodes: NodeReference, step, marks: list[float], outbox: Outbox) -> None:
+        iterate, N = step.iterate, self._problem.N
+        x = np.empty((N + 1, 24))
+        x[:, :6], x[:, 6:9] = iterate.h, iterate.p_WB
+        x[:, 9:12] = rpy_of_matrices(iterate.R_WB)
+        x[:, 12:] = iterate.q.reshape(N + 1, 12)
+        u = np.concatenate([iterate.force_W.reshape(N, 12), iterate.v[:, 6:]], axis=1)
+        # What the old iterate violates: the terms are evaluated where the linearisation was made.
+        violations = self._problem.violations(step.nodes)
+        marks.append(perf_counter())
+        policy = Policy(
+            t=t,
+            valid=True,
+            dt=self._dt,
+            x=x,
+            u=u,
+            v=np.concatenate([iterate.v, iterate.v[-1:]]),
+            contact=nodes.contact,
+            solver="ok",
+            constraint=tuple(violations),
+            violation=np.array(list(violations.values())),
+            stage=("references", "sqp", "policy"),
+            stage_ms=1e3 * np.diff(marks),
+        )
+        outbox.publish("mpc/policy", policy)
+
+
+def rpy_of_matrices(R: np.ndarray) -> np.ndarray:
+    """(n, 3) roll, pitch, yaw of (n, 3, 3) rotations."""
+    rpy = np.empty((len(R), 3))
+    rpy[:, 0] = np.arctan2(R[:, 2, 1], R[:, 2, 2])
+    rpy[:, 1] = np.arcsin(np.clip(-R[:, 2, 0], -1.0, 1.0))
+    rpy[:, 2] = np.arctan2(R[:, 1, 0], R[:, 0, 0])
+    return rpy

@@ -1,0 +1,118 @@
+"""The MPC's process: references on the nodes, policies a robot can stand on, failures by name."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from standing import LEGS, ROBOT, WEIGHT
+
+from surefoot.bus.codec import check
+from surefoot.bus.messages import ControlMode, MotionReference, StateEstimate
+from surefoot.components.component import Inbox, Outbox
+from surefoot.components.mpc.motion_sampler import MotionSampler
+from surefoot.components.mpc.mpc import Mpc
+from surefoot.config.deployment import Deployment
+
+Q = np.tile(ROBOT.nominal.stand_q, 4)
+POSE = np.array([0.0, 0.0, 0.4, 0.0, 0.0, 0.0])
+FEET = POSE[:3] + LEGS.position(Q.reshape(4, 3))
+STAND = MotionReference(
+    valid=True,
+    mode=ControlMode.BALANCE,
+    base_from=POSE,
+    base_to=POSE,
+    p_WF=FEET,
+    normal_W=np.array([0.0, 0.0, 1.0]),
+)
+
+
+def estimate(t=0.0, **changes):
+    figures = {
+        "t": t,
+        "valid": True,
+        "p_WB": POSE[:3],
+        "quat_WB": np.array([1.0, 0, 0, 0]),
+        "q": Q,
+        "p_WF": FEET,
+    }
+    return StateEstimate(**{**figures, **changes})
+
+
+def swinging():
+    return replace(
+        STAND, swing_leg=1, swing_t0=0.3, swing_t1=0.9, swing_from=FEET[1], swing_to=FEET[1] + [0.1, 0, 0],
+        swing_height=0.08, swing_v_lift=0.1, swing_v_touch=0.1,
+    )  # fmt: skip
+
+
+def test_a_swing_is_sampled_on_the_nodes():
+    nodes = MotionSampler(ROBOT, 67, 0.015).sample(swinging(), 0.0)
+    in_air = (nodes.t >= 0.3) & (nodes.t < 0.9)
+    np.testing.assert_array_equal(nodes.contact[:, 1], ~in_air)
+    assert nodes.contact[:, [0, 2, 3]].all()
+    np.testing.assert_allclose(nodes.p_WF[-1, 1], FEET[1] + [0.1, 0.0, 0.0])
+    np.testing.assert_allclose(nodes.force_W.sum(axis=1)[:, 2], WEIGHT)
+    np.testing.assert_allclose(nodes.p_WB[:, None] + LEGS.position(nodes.q), nodes.p_WF, atol=1e-9)
+
+
+def test_probing_forces_follow_each_other_with_a_blend():
+    forces = np.array([[0.0, 0.0, 20.0]] + [[0.0, 0.0, 40.0 + 10.0 * i] for i in range(6)])
+    reference = replace(
+        STAND, probe_leg=2, probe_t0=0.1, probe_dwell_s=0.1, probe_blend_s=0.03, probe_force_W=forces
+    )
+    nodes = MotionSampler(ROBOT, 100, 0.01).sample(reference, 0.0)
+    active = nodes.probe_leg == 2
+    np.testing.assert_array_equal(np.flatnonzero(active), np.arange(10, 70))
+    assert nodes.probe_force_W[19, 2] == pytest.approx(40.0)
+    assert nodes.probe_force_W[21, 2] == pytest.approx(40.0 + 10.0 / 3.0)
+
+
+class Loop:
+    def __init__(self):
+        self.mpc = Mpc(Deployment())
+        self.mpc.warm_up()
+        self.inbox, self.got = Inbox(self.mpc.inputs), []
+        self.outbox = Outbox(self.mpc.outputs, lambda key, message: self.got.append(check(message)))
+
+    def tick(self, t, reference, state=None):
+        self.inbox.deliver("state/estimate", state or estimate(t))
+        self.inbox.deliver("fsm/reference", replace(reference, t=t))
+        self.mpc.step(t, self.inbox, self.outbox)
+        return self.got[-1] if self.got else None
+
+
+def test_a_standing_robot_gets_a_policy_that_holds_it():
+    loop = Loop()
+    for tick in range(20):
+        policy = loop.tick(0.01 * tick, STAND)
+    assert policy.valid and policy.solver == "ok"
+    forces = policy.u[:30, :12].reshape(-1, 4, 3)
+    np.testing.assert_allclose(forces.sum(axis=1)[:, 2], WEIGHT, rtol=0.01)
+    assert dict(zip(policy.constraint, policy.violation, strict=True))["friction_cone"] == 0.0
+
+
+def test_a_swing_leg_is_unloaded_and_follows_its_spline():
+    loop = Loop()
+    for tick in range(25):
+        policy = loop.tick(0.01 * tick, swinging())
+    times = policy.t + policy.dt * np.arange(67)
+    in_air = (times >= 0.3) & (times < 0.9)
+    force = policy.u[:, 3:6]
+    assert not force[in_air].any()
+    p_WF = policy.x[:, 6:9] + LEGS.position(policy.x[:, 12:].reshape(-1, 4, 3))[:, 1]
+    nodes = MotionSampler(ROBOT, 67, 0.015).sample(swinging(), policy.t)
+    assert np.abs(p_WF - nodes.p_WF[:, 1])[:60].max() < 0.02
+
+
+def test_no_policy_without_a_reference_to_balance():
+    loop = Loop()
+    assert loop.tick(0.0, replace(STAND, mode=ControlMode.JOINT)) is None
+
+
+def test_a_failing_solver_is_named_and_the_next_tick_recovers():
+    loop = Loop()
+    loop.tick(0.0, STAND)
+    loop.mpc._iterate.h[:] = np.nan
+    policy = loop.tick(0.01, STAND)
+    assert not policy.valid and "riccati" in policy.solver
+    assert loop.tick(0.02, STAND).valid
