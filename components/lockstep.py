@@ -87,9 +87,11 @@ class Lockstep:
         executors: their executors, with the wall time of every step [ms].
     """
 
-    def __init__(self, deployment: Deployment, names: Iterable[str] = PROCESSES):
+    def __init__(self, deployment: Deployment, names: Iterable[str] = PROCESSES, given: Iterable[Component] = ()):
+        """Build the named components; those in `given` stand in for the process of their name."""
         self.bus = LocalBus()
-        self.components = {name: component_class(name)(deployment) for name in names}
+        parts = {part.name: part for part in given}
+        self.components = {name: parts.get(name) or component_class(name)(deployment) for name in names}
         self.executors = {name: LocalExecutor(part, self.bus) for name, part in self.components.items()}
         self.scheduler = Scheduler(self.executors)
         self._commands = 0

@@ -7,4 +7,30 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Wbc:
-    """Gains, weights and time-outs of the whole-body controller."""
+    """Gains, weights and limits of the whole-body controller."""
+
+    kp: float = 100.0  # impedance of the base, position and rotation [1/s^2]
+    kd: float = 20.0  # [1/s]
+    wrench_weight: tuple[float, float, float, float, float, float] = (
+        1.0,
+        1.0,
+        2.0,
+        2.0,
+        2.0,
+        1.0,
+    )  # force, moment
+    force_weight: float = 1e-2  # pull towards the MPC's forces
+    probe_force_weight: float = 1.0  # the same for the probing foot
+    swing_kp: float = 350.0  # [1/s^2]
+    swing_kd: float = 37.0  # [1/s]
+    swing_weight: float = 100.0
+    acceleration_weight: float = 1e-4
+    stance_kd: float = 20.0  # a stance foot that creeps is braked [1/s]
+    friction: float = 0.5
+    force_max_n: float = 240.0
+    joint_kp: float = 10.0  # of swing legs, on the robot [N m/rad]
+    joint_kd: float = 1.0  # of all legs, on the robot [N m s/rad]
+    posture_kp: float = 250.0  # JOINT mode [N m/rad]
+    posture_kd: float = 6.0  # JOINT mode [N m s/rad]
+    damping_kd: float = 3.0  # DAMP mode [N m s/rad]
+    failures_max: int = 5  # successive QP failures before damping
