@@ -37,15 +37,10 @@ class Script(Component):
             if self.pose is None:
                 self.pose = np.concatenate([estimate.p_WB, np.zeros(3)])
                 self.feet = estimate.p_WF
+            hold = {"base_from": self.pose, "base_to": self.pose, "p_WF": self.feet}
+            up = np.array([0.0, 0.0, 1.0])
             reference = MotionReference(
-                t=t,
-                valid=True,
-                mode=ControlMode.BALANCE,
-                base_from=self.pose,
-                base_to=self.pose,
-                p_WF=self.feet,
-                normal_W=np.array([0.0, 0.0, 1.0]),
-                **self.extra(t),
+                t=t, valid=True, mode=ControlMode.BALANCE, normal_W=up, **(hold | self.extra(t))
             )
         outbox.publish("fsm/reference", reference)
 
