@@ -1,4 +1,4 @@
-# Two commands do everything on a fresh machine: `make run` and `make test`.
+# `make test` does everything on a fresh machine: environment, dependencies, tests.
 PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
@@ -9,16 +9,10 @@ export OMP_NUM_THREADS = 1
 export OPENBLAS_NUM_THREADS = 1
 export MKL_NUM_THREADS = 1
 
-.PHONY: run test bench lint clean
-
-run: $(STAMP)
-	$(BIN)/surefoot run config/planks.toml
+.PHONY: test lint clean
 
 test: $(STAMP)
 	$(BIN)/python -P -m pytest
-
-bench: $(STAMP)
-	$(BIN)/surefoot bench
 
 lint: $(STAMP)
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .

@@ -1,0 +1,43 @@
+"""Imports run one way: bus <- hw <- components <- tools; config imports none of them."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+ALLOWED = {
+    "config": {"config"},
+    "bus": {"bus", "config"},
+    "hw": {"bus", "config", "hw"},
+    "components": {"bus", "config", "components"},
+    "tools": {"bus", "config", "components", "hw", "tools"},
+}
+SOURCES = sorted(path for room in ALLOWED for path in (ROOT / room).rglob("*.py"))
+
+
+def imports(path):
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative imports hide the room they come from"
+            yield node.module
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_room_imports_only_what_it_may(path):
+    room = path.relative_to(ROOT).parts[0]
+    allowed = set(ALLOWED[room])
+    if path.parent == ROOT / "components" / "io":
+        allowed.add("hw")  # the one component that touches the hardware
+    for name in imports(path):
+        if name.startswith("surefoot."):
+            assert name.split(".")[1] in allowed, f"{path.relative_to(ROOT)} imports {name}"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_no_controller_reads_the_simulators_truth(path):
+    parts = path.relative_to(ROOT).parts
+    if parts[0] == "components" and len(parts) > 2 and parts[1] != "io":
+        assert "sim/truth" not in path.read_text()

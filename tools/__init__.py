@@ -1,0 +1,1 @@
+"""What people run: evaluation, plots and the command line. Imports everything; nobody imports it."""
