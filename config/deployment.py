@@ -13,6 +13,7 @@ from surefoot.config.mpc import Mpc
 from surefoot.config.ocp import Ocp
 from surefoot.config.robot import Robot, load_robot
 from surefoot.config.terrain import Terrain
+from surefoot.config.trajopt import Trajopt
 from surefoot.config.typed_toml import build, read_toml, with_override
 from surefoot.config.wbc import Wbc
 
@@ -38,6 +39,7 @@ class Deployment:
     estimator: Estimator = field(default_factory=Estimator)
     ocp: Ocp = field(default_factory=Ocp)
     mpc: Mpc = field(default_factory=Mpc)
+    trajopt: Trajopt = field(default_factory=Trajopt)
     wbc: Wbc = field(default_factory=Wbc)
 
     def load_robot(self) -> Robot:

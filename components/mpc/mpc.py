@@ -14,7 +14,7 @@ from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.mpc.motion_sampler import MotionSampler
 from surefoot.components.ocp.centroidal_dynamics import Trajectory, exp_rotations, log_rotations
 from surefoot.components.ocp.node_reference import NodeReference
-from surefoot.components.ocp.problem import Problem, State
+from surefoot.components.ocp.problem import Problem, State, policy_states
 from surefoot.components.ocp.riccati import SolverFailed
 from surefoot.components.robot_model import build_model
 from surefoot.components.robot_model.rotation import matrix_of
@@ -118,10 +118,6 @@ class Mpc(Component):
 
     def _publish(self, t: float, nodes: NodeReference, step, marks: list[float], outbox: Outbox) -> None:
         iterate, N = step.iterate, self._problem.N
-        x = np.empty((N + 1, 24))
-        x[:, :6], x[:, 6:9] = iterate.h, iterate.p_WB
-        x[:, 9:12] = rpy_of_matrices(iterate.R_WB)
-        x[:, 12:] = iterate.q.reshape(N + 1, 12)
         u = np.concatenate([iterate.force_W.reshape(N, 12), iterate.v[:, 6:]], axis=1)
         # What the old iterate violates: the terms are evaluated where the linearisation was made.
         violations = self._problem.violations(step.nodes)
@@ -130,7 +126,7 @@ class Mpc(Component):
             t=t,
             valid=True,
             dt=self._dt,
-            x=x,
+            x=policy_states(iterate),
             u=u,
             v=np.concatenate([iterate.v, iterate.v[-1:]]),
             contact=nodes.contact,
@@ -141,12 +137,3 @@ class Mpc(Component):
             stage_ms=1e3 * np.diff(marks),
         )
         outbox.publish("mpc/policy", policy)
-
-
-def rpy_of_matrices(R: np.ndarray) -> np.ndarray:
-    """(n, 3) roll, pitch, yaw of (n, 3, 3) rotations."""
-    rpy = np.empty((len(R), 3))
-    rpy[:, 0] = np.arctan2(R[:, 2, 1], R[:, 2, 2])
-    rpy[:, 1] = np.arcsin(np.clip(-R[:, 2, 0], -1.0, 1.0))
-    rpy[:, 2] = np.arctan2(R[:, 1, 0], R[:, 0, 0])
-    return rpy

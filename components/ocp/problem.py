@@ -207,3 +207,15 @@ class Problem:
         length = np.sqrt((tangential**2).sum(axis=-1))
         shrink = np.minimum(1.0, settings.friction * clipped / np.maximum(length, 1e-9))
         return clipped[..., None] * normal + shrink[..., None] * tangential
+
+
+def policy_states(iterate: Trajectory) -> np.ndarray:
+    """(N+1, 24) states as messages carry them: the base's rotation as roll, pitch, yaw (ZYX)."""
+    R = iterate.R_WB
+    x = np.empty((len(R), NX))
+    x[:, MOMENTUM], x[:, POSITION] = iterate.h, iterate.p_WB
+    x[:, 9] = np.arctan2(R[:, 2, 1], R[:, 2, 2])
+    x[:, 10] = np.arcsin(np.clip(-R[:, 2, 0], -1.0, 1.0))
+    x[:, 11] = np.arctan2(R[:, 1, 0], R[:, 0, 0])
+    x[:, JOINTS] = iterate.q.reshape(len(R), 12)
+    return x

@@ -1,0 +1,1 @@
+"""The trajectory optimisation of a stride: what the ground must bear (Sec. II-B)."""

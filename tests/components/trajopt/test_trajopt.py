@@ -1,0 +1,75 @@
+"""A stride on flat ground: what the next foothold has to bear."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from standing import LEGS, ROBOT, WEIGHT
+
+from surefoot.bus.codec import check
+from surefoot.bus.messages import PlanRequest, StateEstimate
+from surefoot.components.component import Inbox, Outbox
+from surefoot.components.trajopt.envelope import grf_envelope
+from surefoot.components.trajopt.trajopt import Trajopt
+from surefoot.config.deployment import Deployment
+
+Q = np.tile(ROBOT.nominal.stand_q, 4)
+BASE = np.array([0.0, 0.0, 0.4])
+FEET = BASE + LEGS.position(Q.reshape(4, 3))
+FORWARD = np.array([0.10, 0.0, 0.0])
+CRAWL = np.array([2, 0, 3, 1])
+UP = np.array([0.0, 0.0, 1.0])
+REQUEST = PlanRequest(
+    id=7,
+    valid=True,
+    p_WF=FEET,
+    target_WF=FEET + FORWARD,
+    base_target=np.concatenate([BASE + FORWARD, np.zeros(3)]),
+    normal_W=UP,
+)
+ESTIMATE = StateEstimate(valid=True, p_WB=BASE, quat_WB=np.array([1.0, 0, 0, 0]), q=Q, p_WF=FEET)
+
+
+def plan(first, request=REQUEST, estimate=ESTIMATE):
+    component, got = Trajopt(Deployment()), []
+    inbox = Inbox(component.inputs)
+    inbox.deliver("trajopt/request", replace(request, leg_order=np.roll(CRAWL, -first)))
+    if estimate is not None:
+        inbox.deliver("state/estimate", estimate)
+    component.step(0.0, inbox, Outbox(component.outputs, lambda key, message: got.append(check(message))))
+    return got[0]
+
+
+@pytest.mark.parametrize("first", range(4))
+def test_the_envelope_is_what_a_quasi_static_crawl_needs(first):
+    result = plan(first)
+    assert result.valid and result.status == "ok" and result.id == 7
+    normal = result.envelope_W[:, 2]
+    assert np.all(np.diff(normal) >= 0.0)
+    # More than a quarter of the weight, up to about the static limit of half of it.
+    assert WEIGHT / 4 < normal.max() < 0.6 * WEIGHT
+    assert normal.min() > 5.0
+    assert np.all(np.hypot(*result.envelope_W[:, :2].T) <= 0.5 * normal)
+
+
+def test_blind_the_footholds_are_the_targets_and_the_base_arrives():
+    result = plan(0)
+    np.testing.assert_array_equal(result.footholds_WF, REQUEST.target_WF)
+    assert result.x[-1, 6] == pytest.approx(0.10, abs=0.03)
+    assert result.x.shape == (81, 24) and result.u.shape == (80, 24)
+
+
+def test_without_an_estimate_the_plan_says_so():
+    result = plan(0, estimate=None)
+    assert not result.valid and "is the estimator running" in result.status
+
+
+def test_the_envelope_takes_whole_vectors_at_the_extrema():
+    t = 0.1 * np.arange(10)
+    force = np.column_stack([np.sin(t), np.cos(t), 50.0 + 10.0 * np.sin(7.0 * t)])
+    envelope = grf_envelope(t, force, 0.1, 0.8, UP)
+    inside = force[1:9]
+    for axis in range(3):
+        assert inside[:, axis].max() in envelope[:, axis]
+        assert inside[:, axis].min() in envelope[:, axis]
+    assert all(any(np.array_equal(row, vector) for vector in inside) for row in envelope)
