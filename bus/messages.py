@@ -171,6 +171,7 @@ class PlanRequest(Message):
     id: int = integer("echoed in the plan")
     leg_order: np.ndarray = array(4, doc="legs in the order they move; the first one probes", dtype="int64")
     p_WF: np.ndarray = array(4, 3, doc="present footholds", unit="m")
+    lifted: bool = flag("the first leg is in the air already")
     target_WF: np.ndarray = array(4, 3, doc="reference touch-down positions", unit="m")
     base_target: np.ndarray = array(6, doc="x, y, z, roll, pitch, yaw at the end of the stride")
     normal_W: np.ndarray = array(3, doc="local surface normal")

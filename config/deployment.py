@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from surefoot.config.estimator import Estimator
+from surefoot.config.fsm import Fsm
 from surefoot.config.hw import Hw
 from surefoot.config.mpc import Mpc
 from surefoot.config.ocp import Ocp
@@ -41,6 +42,7 @@ class Deployment:
     mpc: Mpc = field(default_factory=Mpc)
     trajopt: Trajopt = field(default_factory=Trajopt)
     wbc: Wbc = field(default_factory=Wbc)
+    fsm: Fsm = field(default_factory=Fsm)
 
     def load_robot(self) -> Robot:
         """The figures of this deployment's robot."""

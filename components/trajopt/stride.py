@@ -35,10 +35,11 @@ class Stride:
         region_active = np.zeros((nodes, 4), bool)
         for place, leg in enumerate(request.leg_order):
             landing = self.touch_down(place)
+            lifted = request.lifted and place == 0
             swing = MotionReference(
                 swing_from=request.p_WF[leg],
                 swing_to=request.target_WF[leg],
-                swing_t0=landing - settings.swing_s,
+                swing_t0=0.0 if lifted else landing - settings.swing_s,
                 swing_t1=landing,
                 swing_height=settings.swing_height,
                 swing_v_lift=settings.swing_v_lift,

@@ -1,0 +1,210 @@
+"""The state machine's process: commands, postures, the probing cycle, and what makes all of them stop."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from enum import StrEnum
+from typing import ClassVar
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.bus.messages import ControlMode, FsmEvent, MotionReference, StateEstimate
+from surefoot.components.component import Component, Inbox, Outbox
+from surefoot.components.fsm.observation import Observation
+from surefoot.components.fsm.probing_cycle import ProbingCycle
+from surefoot.components.robot_model import build_model
+from surefoot.components.robot_model.rotation import matrix_of, rpy_of
+from surefoot.config.deployment import Deployment
+
+DIRECTIONS = {"forward": (1.0, 0.0), "backward": (-1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}
+"""Commanded directions in the base frame."""
+
+COMMANDS = (*DIRECTIONS, "stand", "sit", "stop", "damp")
+"""Everything an operator may ask for."""
+
+
+class Posture(StrEnum):
+    """States outside Fig. 6."""
+
+    DAMP = "DAMP"
+    STAND_UP = "STAND_UP"
+    STAND = "STAND"
+    SIT_DOWN = "SIT_DOWN"
+
+
+class Fsm(Component):
+    """Turns operator commands and estimates into the motion reference, at 250 Hz.
+
+    Without a fresh estimate, or fallen over, it asks for damping. A command that cannot be obeyed now is
+    answered by an event that says why; one that needs the robot to stand first is obeyed after standing up.
+    """
+
+    name: ClassVar[str] = "fsm"
+    inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "operator/command", "trajopt/plan", "foothold/regions")
+    outputs: ClassVar[tuple[str, ...]] = ("fsm/reference", "fsm/event", "trajopt/request", "foothold/request")
+
+    def __init__(self, deployment: Deployment):
+        super().__init__(deployment)
+        robot = deployment.load_robot()
+        self._settings = deployment.fsm
+        self._stand_q = np.tile(robot.nominal.stand_q, 4)
+        self._lie_q = np.tile(robot.nominal.lie_q, 4)
+        self._model = build_model(robot)
+        self._data = self._model.createData()
+        self._cycle = ProbingCycle(robot, deployment.fsm, self._report)
+        self._posture: Posture | None = Posture.DAMP
+        self._reason = "waiting for a command"
+        self._joint_from = self._joint_to = self._stand_q
+        self._joint_t0 = self._joint_t1 = 0.0
+        self._wish = ""
+        self._events: list[FsmEvent] = []
+        self._t = 0.0
+
+    def activate(self, t: float, inbox: Inbox) -> bool:
+        return True
+
+    def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        self._t = t
+        estimate = inbox.fresh("state/estimate", t)
+        now = self._observe(t, estimate) if estimate is not None else None
+        for message in inbox.new("operator/command"):
+            self._command(message.command, now)
+        if now is None:
+            self._lost()
+        elif self._posture is not Posture.DAMP and np.abs(now.rpy[:2]).max() > self._settings.tilt_max:
+            self._damp(f"tilt {np.abs(now.rpy[:2]).max():.2f} rad, limit {self._settings.tilt_max} rad: fallen")
+        else:
+            self._advance(now, inbox)
+        outbox.publish("fsm/reference", self._reference(t))
+        self._send(outbox)
+
+    # Commands -------------------------------------------------------------------------------------------
+
+    def _command(self, command: str, now: Observation | None) -> None:
+        if command not in COMMANDS:
+            self._report("refused", f"unknown command {command!r}; commands are {', '.join(COMMANDS)}")
+        elif command == "damp":
+            self._damp("commanded")
+        elif now is None:
+            self._wish = command
+            self._report("waiting", f"{command}: kept until there is a fresh state/estimate")
+        elif command == "sit":
+            self._sit(now)
+        elif command == "stop":
+            self._wish = ""
+            if self._posture is None:
+                self._cycle.stop(now, "commanded stop")
+        else:
+            self._go(command, now)
+
+    def _go(self, command: str, now: Observation) -> None:
+        """stand or a direction: stand up first where need be."""
+        if self._posture in (Posture.DAMP, Posture.SIT_DOWN):
+            self._wish = command
+            self._move_joints(Posture.STAND_UP, self._stand_q, now, f"commanded {command}")
+        elif self._posture is Posture.STAND_UP:
+            self._wish = command
+        elif command == "stand":
+            if self._posture is None:
+                self._cycle.stop(now, "commanded stand")
+        elif self._posture is Posture.STAND or self._cycle.state == "STOPPED":
+            self._posture = None
+            self._cycle.walk(now, np.array(DIRECTIONS[command]), command)
+        else:
+            self._wish = command
+            self._cycle.stop(now, f"commanded {command}")
+
+    def _sit(self, now: Observation) -> None:
+        if self._posture is None and self._cycle.state != "STOPPED":
+            self._wish = "sit"
+            self._cycle.stop(now, "commanded sit")
+        elif self._posture is not Posture.DAMP:
+            self._move_joints(Posture.SIT_DOWN, self._lie_q, now, "commanded sit")
+
+    # Postures -------------------------------------------------------------------------------------------
+
+    def _advance(self, now: Observation, inbox: Inbox) -> None:
+        if self._posture is Posture.STAND_UP and now.t >= self._joint_t1:
+            self._cycle.stand(now, "standing")
+            self._enter(Posture.STAND, "stood up")
+        elif self._posture is Posture.SIT_DOWN and now.t >= self._joint_t1:
+            self._damp("sitting")
+        elif self._posture is None:
+            for answer in inbox.new("foothold/regions"):
+                self._cycle.regions(answer, now)
+            for plan in inbox.new("trajopt/plan"):
+                self._cycle.plan(plan, now)
+            self._cycle.step(now)
+        resting = self._posture is Posture.STAND or (self._posture is None and self._cycle.state == "STOPPED")
+        if self._wish and (resting or self._posture is Posture.DAMP) and now.t >= self._cycle.reference.base_t1:
+            wish, self._wish = self._wish, ""
+            if wish != "stand" or self._posture is Posture.DAMP:
+                self._command(wish, now)
+
+    def _move_joints(self, posture: Posture, to: np.ndarray, now: Observation, reason: str) -> None:
+        settings = self._settings
+        self._joint_from, self._joint_to = now.estimate.q.copy(), to
+        farthest = float(np.abs(self._joint_to - self._joint_from).max())
+        self._joint_t0 = now.t
+        self._joint_t1 = now.t + max(settings.posture_min_s, farthest / settings.posture_speed)
+        self._enter(posture, reason)
+
+    def _damp(self, reason: str) -> None:
+        self._wish = ""
+        if self._posture is not Posture.DAMP:
+            self._enter(Posture.DAMP, reason)
+
+    def _lost(self) -> None:
+        if self._posture is not Posture.DAMP:
+            self._damp("state/estimate is missing or stale: is the estimator running?")
+
+    def _enter(self, posture: Posture, reason: str) -> None:
+        self._posture, self._reason = posture, reason
+        self._report("transition", reason)
+
+    # Messages -------------------------------------------------------------------------------------------
+
+    def _observe(self, t: float, estimate: StateEstimate) -> Observation:
+        w, x, y, z = estimate.quat_WB
+        q = np.concatenate([estimate.p_WB, [x, y, z, w], estimate.q])
+        com_W = pin.centerOfMass(self._model, self._data, q).copy()
+        return Observation(t, estimate, com_W, rpy_of(matrix_of(estimate.quat_WB)))
+
+    def _reference(self, t: float) -> MotionReference:
+        if self._posture in (None, Posture.STAND):
+            message = self._cycle.message(t)
+            if self._posture is None:
+                return message
+            return replace(message, state=str(self._posture), reason=self._reason)
+        mode = ControlMode.DAMP if self._posture is Posture.DAMP else ControlMode.JOINT
+        return MotionReference(
+            t=t,
+            valid=True,
+            state=str(self._posture),
+            reason=self._reason,
+            mode=mode,
+            joint_from=self._joint_from,
+            joint_to=self._joint_to,
+            joint_t0=self._joint_t0,
+            joint_t1=self._joint_t1,
+            normal_W=np.array([0.0, 0.0, 1.0]),
+        )
+
+    def _send(self, outbox: Outbox) -> None:
+        cycle = self._cycle
+        if cycle.foothold_request is not None:
+            outbox.publish("foothold/request", cycle.foothold_request)
+            cycle.foothold_request = None
+        if cycle.plan_request is not None:
+            outbox.publish("trajopt/request", cycle.plan_request)
+            cycle.plan_request = None
+        for event in self._events:
+            outbox.publish("fsm/event", event)
+        self._events.clear()
+
+    def _report(self, kind: str, reason: str, **figures) -> None:
+        state = str(self._cycle.state) if self._posture is None else str(self._posture)
+        counters = self._cycle.counters if self._posture is None else {}
+        event = FsmEvent(t=self._t, valid=True, kind=kind, state=state, reason=reason, **(counters | figures))
+        self._events.append(event)

@@ -1,0 +1,33 @@
+"""What the state machine sees at one instant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from surefoot.bus.messages import StateEstimate
+
+
+@dataclass(frozen=True)
+class Observation:
+    """An estimate, with what the state machine derives from it."""
+
+    t: float  # [s]
+    estimate: StateEstimate
+    com_W: np.ndarray  # (3,) centre of mass [m]
+    rpy: np.ndarray  # (3,) roll, pitch, yaw of the trunk [rad]
+
+    @property
+    def pose(self) -> np.ndarray:
+        """(6,) base pose: x, y, z [m], roll, pitch, yaw [rad]."""
+        return np.concatenate([self.estimate.p_WB, self.rpy])
+
+    @property
+    def com_B(self) -> np.ndarray:
+        """(3,) centre of mass from the trunk's origin, in the world's axes [m]."""
+        return self.com_W - self.estimate.p_WB
+
+    def normal_force(self, leg: int) -> float:
+        """Estimated force along the local normal on a foot [N]."""
+        return float(self.estimate.force_W[leg] @ self.estimate.normal_W)

@@ -1,0 +1,52 @@
+"""The triangle of the three feet that carry the robot while the fourth is moved or probes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+_ANTICLOCKWISE = (0, 2, 3, 1)
+
+
+class SupportTriangle:
+    """Triangle over the feet other than `leg`, along gravity.
+
+    Attributes:
+        corners: (3, 2) anticlockwise, in the world [m].
+        normals: (3, 2) inward unit normal of the edge from each corner to the next.
+    """
+
+    def __init__(self, p_WF: np.ndarray, leg: int):
+        self.corners = np.array([p_WF[other, :2] for other in _ANTICLOCKWISE if other != leg])
+        edges = np.roll(self.corners, -1, axis=0) - self.corners
+        self.normals = np.stack([-edges[:, 1], edges[:, 0]], axis=1) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
+
+    def margin(self, point: np.ndarray) -> float:
+        """Distance of a point (2,) from the nearest edge, positive inside [m]."""
+        return float(((point - self.corners) * self.normals).sum(axis=1).min())
+
+    def nearest(self, point: np.ndarray, inset: float) -> np.ndarray:
+        """The point (2,) of the triangle shrunk by `inset` [m] that is nearest to `point`.
+
+        A triangle that is smaller than the inset shrinks to its incentre.
+        """
+        offsets = (self.normals * self.corners).sum(axis=1) + min(inset, 0.999 * self._inradius())
+        if (self.normals @ point >= offsets).all():
+            return point
+        inner = [
+            np.linalg.solve(self.normals[[before, edge]], offsets[[before, edge]])
+            for edge, before in enumerate((2, 0, 1))
+        ]
+        best, distance = inner[0], np.inf
+        for start, end in zip(inner, inner[1:] + inner[:1], strict=True):
+            along = end - start
+            share = np.clip((point - start) @ along / max(along @ along, 1e-12), 0.0, 1.0)
+            candidate = start + share * along
+            gap = np.hypot(*(candidate - point))
+            if gap < distance:
+                best, distance = candidate, gap
+        return best
+
+    def _inradius(self) -> float:
+        edges = np.roll(self.corners, -1, axis=0) - self.corners
+        area = 0.5 * abs(edges[0, 0] * edges[1, 1] - edges[0, 1] * edges[1, 0])
+        return 2.0 * area / np.hypot(edges[:, 0], edges[:, 1]).sum()

@@ -1,0 +1,67 @@
+"""Settings of the state machine: the paper's numbers, and what it leaves open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True)
+class Fsm:
+    """Lengths, times and thresholds of stepping and probing (Sec. II-D)."""
+
+    goal_m: float = 1.0  # every foot advances this far in the commanded direction, then the robot stands; 0: never
+
+    # Targets and candidates.
+    step_m: float = 0.10  # the target base pose lies this far ahead (Sec. II-D.1)
+    step_min_m: float = 0.05  # a foot whose target is not even this far ahead of it is left where it is
+    alternatives: int = 3  # (Sec. II-D.3)
+    alternative_spacing_m: float = 0.075
+    base_height_min_m: float = 0.29  # of the hip axes; the base is lowered as far as this to reach a candidate
+    base_height_step_m: float = 0.02
+    leg_length_max_m: float = 0.46  # planned reach; the robot's own limit is a little more
+
+    # Base shift before a swing.
+    base_reference: Literal["polygon", "stride"] = "polygon"  # while probing: inside the triangle, or the stride's
+    margin_m: float = 0.04  # alpha of eq. (5)
+    margin_extra_m: float = 0.01  # the base is sent this much further inside
+    shift_s: float = 0.5  # least duration
+    shift_speed: float = 0.15  # mean speed of longer shifts [m/s]
+    shift_margin_m: float = 0.035  # lift-off once the centre of mass is this far inside ...
+    shift_rest_speed: float = 0.05  # ... slower than this [m/s] ...
+    shift_hold_s: float = 0.06  # ... for this long
+    shift_timeout_s: float = 3.0
+
+    # Swing.
+    swing_s: float = 0.6
+    swing_height_m: float = 0.08
+    swing_v_lift: float = 0.1  # [m/s]
+    swing_v_touch: float = 0.1  # slow: an impact is itself a probe [m/s]
+    contact_armed: float = 0.6  # share of the swing after which contact counts as early touch-down
+    descend_m: float = 0.12  # below the expected ground, then the foothold is given up
+
+    # Probing.
+    probing: bool = True  # false: the paper's baseline, feet are trusted on contact
+    support_polygon: bool = True  # eq. (5)
+    fixed_force_n: float = 0.0  # > 0: this normal force instead of the optimised envelope
+    dwell_s: float = 0.1  # each force (Sec. II-C)
+    blend_s: float = 0.03  # change from one force to the next, inside the dwell
+    settle_s: float = 0.03  # from contact to the first force
+    collapse_m: float = 0.03  # displacement that is a collapse (Sec. II-D.5)
+    held_share: float = 0.8  # a force counts as held above this share of what was asked
+
+    # Around the foothold.
+    probe_around: bool = True
+    around_radius_m: float = 0.025  # the foot pad's radius (Sec. II-D.5)
+    hop_s: float = 0.3
+    hop_height_m: float = 0.035
+
+    # After a collapse.
+    leg_up_s: float = 0.3
+    leg_up_below_hip_m: float = 0.27
+
+    # Postures and limits.
+    posture_speed: float = 0.8  # of the fastest joint in JOINT mode [rad/s]
+    posture_min_s: float = 0.2
+    tilt_max: float = 0.7  # beyond this the robot has fallen and is damped [rad]
+    crawl_order: tuple[int, int, int, int] = (2, 0, 3, 1)  # RL, FL, RR, FR
