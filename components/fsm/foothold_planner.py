@@ -55,6 +55,7 @@ class FootholdPlanner:
         normal_W: np.ndarray,
         yaw: float,
         com_B: np.ndarray,
+        reserve_W: np.ndarray,
     ) -> np.ndarray | None:
         """Base pose that keeps the centre of mass inside the other three feet and reaches a foothold.
 
@@ -66,6 +67,7 @@ class FootholdPlanner:
             foothold_W: (3,) where to [m].
             p_WF: (4, 3) present feet [m].
             com_B: (3,) centre of mass from the trunk's origin, in the world's axes [m].
+            reserve_W: (3,) what must be in reach beyond the foothold: the point probed in front of it [m].
 
         Returns:
             (6,) the pose, or None when no height above the least reaches it.
@@ -80,6 +82,7 @@ class FootholdPlanner:
         height = self._height
         while height >= self._lowest - 1e-9:
             pose = self.pose(base_xy, carrying, normal_W, yaw, height)
+            feet[leg] = foothold_W + reserve_W
             if self.leg_lengths(pose, feet).max() <= settings.leg_length_max_m:
                 return pose
             height -= settings.base_height_step_m

@@ -242,14 +242,24 @@ class ProbingCycle:
     def _on_regions(self, answer: FootholdRegions, now: Observation) -> None:
         leg, feet = self._leg, self.reference.p_WF
         foothold = answer.foothold_WF[leg]
-        pose = self._planner.support_pose(leg, foothold, feet, self.reference.normal_W, self._heading, now.com_B)
+        settings = self._settings
+        reserve = settings.around_radius_m if settings.probing and settings.probe_around else 0.0
+        pose = self._planner.support_pose(
+            leg,
+            foothold,
+            feet,
+            self.reference.normal_W,
+            self._heading,
+            now.com_B,
+            reserve * np.append(self._direction, 0.0),
+        )
         if pose is None:
             self._event("rejected", "out of reach at every base height", now, foothold)
             self._next_candidate(now)
             return
         self._support_pose = pose
         centre = self._target_xy(feet)
-        order = self._settings.crawl_order
+        order = settings.crawl_order
         place = order.index(leg)
         self.plan_request = PlanRequest(
             t=now.t,

@@ -83,11 +83,14 @@ class Wbc(Component):
         v = np.concatenate([R.T @ estimate.v_WB_W, estimate.omega_WB_B, estimate.dq])
         qp.update(q, v)
         stance = np.isin(reference.leg_status, (LegStatus.STANCE, LegStatus.PROBING, LegStatus.COLLAPSING))
-        p_WB, R_des, v_des, omega_W, bias_force = self._desired(t, reference, policy, stance)
+        p_WB, R_des, v_des, omega_W, planned_force = self._desired(t, reference, policy, stance)
+        # A foot that has just left the ground may still carry in the policy: the wrench it was to give is
+        # asked of the others, or the base would tip towards it until the next policy comes.
+        bias_force = planned_force * stance[:, None]
         linear = qp.mass * (settings.kp * (p_WB - estimate.p_WB) + settings.kd * (v_des - estimate.v_WB_W))
         turn = log_rotation(R_des @ R.T)
         spin = settings.kd * (omega_W - R @ estimate.omega_WB_B)
-        wrench = qp.wrench_map @ bias_force.ravel() + np.concatenate(
+        wrench = qp.wrench_map @ planned_force.ravel() + np.concatenate(
             [linear, qp.inertia_W @ (settings.kp * turn + spin)]
         )
         acceleration = -settings.stance_kd * estimate.v_WF
@@ -137,8 +140,7 @@ class Wbc(Component):
         share = min(max(position - k, 0.0), 1.0)
         x = policy.x[k] + share * (policy.x[k + 1] - policy.x[k])
         R = matrix_of_rpy(x[9:12])
-        force = policy.u[k, :12].reshape(4, 3) * stance[:, None]
-        return x[6:9], R, R @ policy.v[k, :3], R @ policy.v[k, 3:6], force
+        return x[6:9], R, R @ policy.v[k, :3], R @ policy.v[k, 3:6], policy.u[k, :12].reshape(4, 3)
 
     def _swing(self, t: float, estimate: StateEstimate, reference: MotionReference, R: np.ndarray):
         """Task acceleration of the swing foot, and its joint references by inverse kinematics."""
