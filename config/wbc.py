@@ -25,8 +25,10 @@ class Wbc:
     swing_kd: float = 37.0  # [1/s]
     swing_weight: float = 100.0
     acceleration_weight: float = 1e-4
+    stance_kp: float = 50.0  # a stance foot that has crept is drawn back [1/s^2]
     stance_kd: float = 20.0  # a stance foot that creeps is braked [1/s]
-    friction: float = 0.5
+    friction: float = 0.35  # pyramid inside the paper's cone of 0.5
+    force_min_n: float = 10.0  # a lighter stance foot creeps: joint friction alone is worth 3 N at the foot
     force_max_n: float = 240.0
     joint_kp: float = 10.0  # of swing legs, on the robot [N m/rad]
     joint_kd: float = 1.0  # of all legs, on the robot [N m s/rad]

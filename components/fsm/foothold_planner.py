@@ -83,7 +83,7 @@ class FootholdPlanner:
         while height >= self._lowest - 1e-9:
             pose = self.pose(base_xy, carrying, normal_W, yaw, height)
             feet[leg] = foothold_W + reserve_W
-            if self.leg_lengths(pose, feet).max() <= settings.leg_length_max_m:
+            if self.leg_lengths(pose, feet).max() <= settings.leg_length_plan_m:
                 return pose
             height -= settings.base_height_step_m
         return None

@@ -352,7 +352,7 @@ class ProbingCycle:
         settings, reference, leg = self._settings, self.reference, self._leg
         foot = now.estimate.p_WF[leg]
         length = self._planner.leg_lengths(now.pose, now.estimate.p_WF)[leg]
-        if length > settings.leg_length_max_m + 0.01 or self._touch_z - foot[2] > settings.descend_m:
+        if length > settings.leg_length_max_m or self._touch_z - foot[2] > settings.descend_m:
             why = (
                 f"no contact down to {1e2 * (self._touch_z - foot[2]):.0f} cm below the plane, leg {length:.3f} m"
             )

@@ -93,7 +93,8 @@ class Wbc(Component):
         wrench = qp.wrench_map @ planned_force.ravel() + np.concatenate(
             [linear, qp.inertia_W @ (settings.kp * turn + spin)]
         )
-        acceleration = -settings.stance_kd * estimate.v_WF
+        crept = reference.p_WF - estimate.p_WF
+        acceleration = settings.stance_kp * crept - settings.stance_kd * estimate.v_WF
         kp, q_ref, dq_ref = np.zeros(12), estimate.q.copy(), np.zeros(12)
         if reference.swing_leg >= 0 and not stance[reference.swing_leg]:
             leg = reference.swing_leg

@@ -151,6 +151,7 @@ class WholeBodyQp:
         for leg in range(4):
             rows = slice(6 + 3 * leg, 9 + 3 * leg)
             wanted = task.foot_acceleration_W[leg] - self._bias[leg]
+            self._box_lower[_NV + 3 * leg + 2] = settings.force_min_n if task.stance[leg] else 0.0
             if task.stance[leg]:
                 A[rows, :_NV], b[rows] = self.J[leg], wanted
             else:

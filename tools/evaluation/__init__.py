@@ -1,0 +1,1 @@
+"""Grading of the whole stack in lockstep against the simulator's truth."""

@@ -1,0 +1,121 @@
+"""Many graded runs in parallel processes, `results.json` and `summary.md`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from importlib.metadata import version
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+
+from surefoot.config.deployment import load_deployment
+from surefoot.config.typed_toml import to_table
+from surefoot.tools.evaluation.arms import arm_overrides
+from surefoot.tools.evaluation.one_run import LIMIT_S, grade
+
+
+def evaluate(
+    scenario: Path,
+    seeds: Sequence[int],
+    out: Path,
+    arm: str = "full",
+    overrides: Sequence[str] = (),
+    jobs: int = 1,
+    limit_s: float = LIMIT_S,
+    say=print,
+) -> dict:
+    """Grade a deployment file over seeds; writes `results.json` after every run, so nothing is lost.
+
+    Raises:
+        ConfigError: the deployment or an override is wrong.
+        ValueError: no such arm.
+    """
+    changes = [*arm_overrides(arm), *overrides]
+    deployment = load_deployment(scenario, changes)
+    out.mkdir(parents=True, exist_ok=True)
+    results = {
+        "scenario": scenario.stem,
+        "arm": arm,
+        "config": to_table(deployment),
+        "version": version("surefoot"),
+        "runs": [],
+    }
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        waiting = {pool.submit(_one, scenario, [*changes, f"hw.seed={seed}"], limit_s): seed for seed in seeds}
+        for done in as_completed(waiting):
+            seed = waiting[done]
+            error = done.exception()
+            run = {"seed": seed, "success": False, "failure": f"error: {error}"} if error else done.result()
+            results["runs"] = sorted([*results["runs"], run], key=lambda entry: entry["seed"])
+            (out / "results.json").write_text(json.dumps(results, indent=1))
+            (out / "summary.md").write_text(summary(results))
+            verdict = "crossed" if run["success"] else run["failure"]
+            say(f"seed {seed}: {verdict}, {run.get('sim_time_s', 0.0):.0f} s simulated")
+    return results
+
+
+def _one(scenario: Path, changes: list[str], limit_s: float) -> dict:
+    deployment = load_deployment(scenario, changes)
+    seed = deployment.hw.seed
+    return grade(deployment, limit_s, lambda line: print(f"seed {seed}: {line}", flush=True))
+
+
+def summary(results: dict) -> str:
+    """The runs as a table, and the measures over all of them."""
+    lines = [
+        f"# {results['scenario']}, arm {results['arm']}",
+        "",
+        "| seed | result | time s | footholds | collapses | missed | late | false | margin mm | tilt rad | RTF |",
+        "|---|---|---|---|---|---|---|---|---|---|---|",
+    ]
+    runs = results["runs"]
+    whole = [run for run in runs if "footholds" in run]
+    for run in runs:
+        result = "crossed" if run["success"] else run["failure"]
+        if "footholds" not in run:
+            lines.append(f"| {run['seed']} | {result} |" + " |" * 9)
+            continue
+        margin = run["min_support_margin_m"]
+        lines.append(
+            f"| {run['seed']} | {result} | {run['sim_time_s']:.0f} | {run['footholds']} "
+            f"| {run['collapses_detected']} | {run['missed_collapses']} | {run['late_collapses']} "
+            f"| {run['false_alarms']} | {'-' if margin is None else f'{1e3 * margin:.0f}'} "
+            f"| {run['max_tilt_rad']:.2f} | {run['real_time_factor']:.2f} |"
+        )
+    if whole:
+        lines += ["", *_totals(runs, whole)]
+    return "\n".join(lines) + "\n"
+
+
+def _totals(runs: list[dict], whole: list[dict]) -> list[str]:
+    def total(key: str) -> int:
+        return sum(run[key] for run in whole)
+
+    moved = [value for run in whole for value in run["displacement_at_detection_m"]]
+    unload = [value for run in whole for value in run["unload_s"]]
+    drift = [run["estimator"]["xy_drift_per_m"] for run in whole if run["estimator"]["xy_drift_per_m"] is not None]
+    lines = [
+        f"- success {sum(run['success'] for run in runs)} of {len(runs)}",
+        f"- missed collapses {total('missed_collapses')} of {total('footholds')} accepted footholds",
+        f"- false alarms {total('false_alarms')} of {total('probes')} probes",
+        f"- true against MPC's force, RMSE N: {_list(run['probe_rmse_n']['true_vs_mpc'] for run in whole)}",
+        f"- estimate against truth, RMSE N: {_list(run['probe_rmse_n']['estimate_vs_true'] for run in whole)}",
+        f"- drift of x, y per metre: {_list(drift, 3)}",
+        f"- largest tilt error, degrees: {_list(np.rad2deg([r['estimator']['tilt_error_max_rad'] for r in whole]))}",
+    ]
+    if moved:
+        lines.append(f"- displacement at detection, cm: median {_cm(moved, 50)}, p95 {_cm(moved, 95)}")
+    if unload:
+        lines.append(f"- unloaded after detection, ms: median {1e3 * np.median(unload):.0f}, max {1e3 * max(unload):.0f}")
+    return lines
+
+
+def _list(values, digits: int = 1) -> str:
+    return ", ".join(f"{value:.{digits}f}" for value in values) or "-"
+
+
+def _cm(values: list[float], percentile: float) -> str:
+    return f"{1e2 * np.percentile(values, percentile):.1f}"

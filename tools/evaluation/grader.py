@@ -1,0 +1,287 @@
+"""Watches one run on the bus and grades it with the simulator's truth and the press test."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from surefoot.bus.message import Message
+from surefoot.bus.messages import FsmEvent, JointCommand, LegStatus, MotionReference, Policy, SimTruth, StateEstimate
+from surefoot.config.deployment import Deployment
+from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
+
+FALL_TILT = np.deg2rad(45.0)
+STUCK_S = 5.0  # without contact change or support below the surface
+_BELOW_M = 0.06  # a foot this far below the surface is in a hole
+_ANTICLOCKWISE = (0, 2, 3, 1)
+
+
+class Grader:
+    """Collects the measures of `results.json` while a run goes on.
+
+    Attributes:
+        failure: why the run has failed, or "".
+        passed: all four feet are past the terrain's end.
+    """
+
+    def __init__(self, deployment: Deployment, end_x: float):
+        self._end_x = end_x + deployment.load_robot().foot.radius
+        self._terrain = deployment.terrain.kind
+        self._goal = deployment.fsm.goal_m
+        self._press = PressTest(deployment)
+        self._verdict = lru_cache(maxsize=None)(self._collapsible)
+        self.failure, self.passed = "", False
+        self._truth: SimTruth | None = None
+        self._estimate: StateEstimate | None = None
+        self._reference: MotionReference | None = None
+        self._policy: Policy | None = None
+        self._command: JointCommand | None = None
+        self._start: SimTruth | None = None
+        self._start_error = np.zeros(3)
+        self._estimate_error = np.zeros(3)
+        self._touched_W: dict[int, np.ndarray] = {}
+        self._accepted_W: dict[int, np.ndarray] = {}
+        self._sunk: set[int] = set()
+        self._probe_open: dict | None = None
+        self._low_since: dict[int, float] = {}
+        self._lifting: tuple[int, float] | None = None
+        self._forces: list[tuple[float, ...]] = []
+        self.counts = dict.fromkeys(
+            ("footholds", "probes", "candidates_tried", "collapses_detected", "missed_collapses", "false_alarms"), 0
+        )
+        self.counts |= dict.fromkeys(("late_collapses", "true_positives", "false_negatives"), 0)
+        self.displacement: list[float] = []
+        self.unload: list[float] = []
+        self.margin = np.inf
+        self.tilt = self.saturated_s = self.energy = self.z_error = self.tilt_error = 0.0
+        self.probe_force: dict[str, list[float]] = {
+            key: [] for key in ("asked_n", "mpc_n", "wbc_n", "estimated_n", "true_n")
+        }
+        self._squares = np.zeros(3)  # of true - MPC, estimate - true, and their count, while forces are held
+        self.violation: dict[str, float] = {}
+
+    def __call__(self, key: str, message: Message) -> None:
+        """Listen to every message of the run."""
+        if key == "sim/truth":
+            self._on_truth(message)
+        elif key == "state/estimate":
+            self._estimate = message
+        elif key == "fsm/reference":
+            self._reference = message
+        elif key == "mpc/policy" and message.valid:
+            self._policy = message
+            for name, value in zip(message.constraint, message.violation, strict=True):
+                self.violation[name] = max(self.violation.get(name, 0.0), float(value))
+        elif key == "joint/command":
+            self._command = message
+        elif key == "fsm/event":
+            self._on_event(message)
+
+    @property
+    def over(self) -> bool:
+        """The run is decided."""
+        reference = self._reference
+        done = reference is not None and reference.finished
+        return bool(self.failure) or (self.passed and self._terrain != "flat") or done
+
+    def finish(self, t: float, limit_s: float) -> None:
+        """Name the failure of a run that ended without success."""
+        reference = self._reference
+        finished = reference is not None and reference.finished
+        if not self.failure and not (finished and (self._terrain == "flat" or self.passed)) and not self.passed:
+            self.failure = "timeout" if t >= limit_s else "stopped"
+
+    # Truth ----------------------------------------------------------------------------------------------
+
+    def _on_truth(self, truth: SimTruth) -> None:
+        self._truth = truth
+        dt = 0.002
+        w = min(1.0, abs(float(truth.quat_WB[0] ** 2 + truth.quat_WB[3] ** 2)))
+        tilt = 2.0 * np.arccos(np.sqrt(w))
+        self.tilt = max(self.tilt, float(tilt))
+        self.energy += dt * truth.power_w
+        self.saturated_s += dt * truth.saturated
+        if self._start is None:
+            self._start = truth
+        if tilt > FALL_TILT:
+            self.failure = self.failure or "fell"
+        elif any(part in truth.body_contact for part in ("trunk", "hip", "thigh")):
+            self.failure = self.failure or f"contact: {truth.body_contact}"
+        self.passed = self.passed or bool((truth.p_WF[:, 0] > self._end_x).all())
+        self._watch_holes(truth)
+        self._watch_accepted(truth)
+        if self._estimate is not None:
+            self._compare(truth, self._estimate)
+        if self._reference is not None:
+            self._watch_probe(truth, self._reference)
+
+    def _watch_holes(self, truth: SimTruth) -> None:
+        """A foot stuck below the surface."""
+        for leg in range(4):
+            if truth.p_WF[leg, 2] > -_BELOW_M:
+                self._low_since.pop(leg, None)
+            elif truth.t - self._low_since.setdefault(leg, truth.t) > STUCK_S:
+                self.failure = self.failure or "stuck"
+
+    def _watch_accepted(self, truth: SimTruth) -> None:
+        status = self._reference.leg_status if self._reference is not None else np.zeros(4, int)
+        for leg, where in self._accepted_W.items():
+            if leg in self._sunk or status[leg] != LegStatus.STANCE:
+                continue
+            if where[2] - truth.p_WF[leg, 2] > COLLAPSE_M:
+                self._sunk.add(leg)
+                self.counts["missed_collapses"] += 1
+
+    def _compare(self, truth: SimTruth, estimate: StateEstimate) -> None:
+        error = estimate.p_WB - truth.p_WB
+        self._estimate_error = error
+        self.z_error = max(self.z_error, abs(float(error[2])))
+        up, seen = _up(truth.quat_WB), _up(estimate.quat_WB)
+        self.tilt_error = max(self.tilt_error, float(np.arccos(np.clip(up @ seen, -1.0, 1.0))))
+
+    def _watch_probe(self, truth: SimTruth, reference: MotionReference) -> None:
+        """CoM margin from lift-off to the end of probing; forces while one is held; the unloading."""
+        leg = reference.leg
+        if leg < 0:
+            return
+        busy = reference.leg_status[leg] in (LegStatus.SWING, LegStatus.LANDING, LegStatus.PROBING)
+        if busy and reference.state in ("DETECT_CONTACT", "PROBE", "PROBE_AROUND", "LEG_UP"):
+            self.margin = min(self.margin, _margin(truth, leg))
+        if self._lifting is not None:
+            lifted, since = self._lifting
+            if truth.force_W[lifted, 2] < 10.0:
+                self.unload.append(truth.t - since)
+                self._lifting = None
+        if reference.state != "PROBE" or reference.probe_leg < 0:
+            return
+        since = truth.t - reference.probe_t0
+        index, inside = divmod(since, reference.probe_dwell_s)
+        if 0 <= index < len(reference.probe_force_W) - 1 and inside >= 0.5 * reference.probe_dwell_s:
+            self._hold(int(index), truth, reference)
+
+    def _hold(self, index: int, truth: SimTruth, reference: MotionReference) -> None:
+        if self._policy is None or self._command is None or self._estimate is None:
+            return
+        leg, normal = reference.probe_leg, reference.normal_W
+        policy = self._policy
+        step = min(max(int((truth.t - policy.t) / policy.dt), 0), len(policy.u) - 1)
+        planned = float(policy.u[step].reshape(8, 3)[leg] @ normal)
+        true, seen = truth.force_W[leg] @ normal, self._estimate.force_W[leg] @ normal
+        asked = reference.probe_force_W[index + 1] @ normal
+        self._squares += [(true - planned) ** 2, (seen - true) ** 2, 1.0]
+        self._forces.append((index, asked, planned, self._command.force_W[leg] @ normal, seen, true))
+
+    # Events ---------------------------------------------------------------------------------------------
+
+    def _on_event(self, event: FsmEvent) -> None:
+        truth, counts = self._truth, self.counts
+        if truth is None:
+            return
+        leg = event.leg
+        if event.kind == "contact":
+            self._touched_W[leg] = truth.p_WF[leg].copy()
+        elif event.kind == "transition" and event.state == "PROBE":
+            counts["probes"] += 1
+            counts["candidates_tried"] += event.around == 0
+            self._forces.clear()
+            self._probe_open = {"point": truth.p_WF[leg, :2].copy(), "force": 0.0}
+        elif event.kind == "force_held":
+            if self._probe_open is not None:
+                self._probe_open["force"] = max(self._probe_open["force"], event.asked_n)
+            self._close_force(event)
+            if event.force_index == 5:
+                self._close_probe(collapsed=False)
+        elif event.kind == "collapse":
+            counts["collapses_detected"] += 1
+            self.displacement.append(float(np.linalg.norm(truth.p_WF[leg] - self._touched_W[leg])))
+            self._lifting = (leg, truth.t)
+            if self._probe_open is not None:
+                self._probe_open["force"] = self._largest_asked()
+            self._close_probe(collapsed=True)
+        elif event.kind == "late_collapse":
+            counts["late_collapses"] += 1
+        elif event.kind == "accepted":
+            counts["footholds"] += 1
+            self._accepted_W[leg] = truth.p_WF[leg].copy()
+            self._sunk.discard(leg)
+
+    def _largest_asked(self) -> float:
+        reference = self._reference
+        return 0.0 if reference is None else float((reference.probe_force_W @ reference.normal_W).max(initial=0.0))
+
+    def _close_force(self, event: FsmEvent) -> None:
+        rows = [row[1:] for row in self._forces if row[0] == event.force_index]
+        if rows:
+            means = np.mean(rows, axis=0)
+            for key, value in zip(self.probe_force, means, strict=True):
+                self.probe_force[key].append(round(float(value), 2))
+
+    def _close_probe(self, collapsed: bool) -> None:
+        """Label the probe with what the press test says of that point at the largest force asked."""
+        probe, self._probe_open = self._probe_open, None
+        if probe is None:
+            return
+        x, y = probe["point"]
+        truly = self._verdict(round(float(x), 3), round(float(y), 3), round(probe["force"]))
+        if collapsed and truly:
+            self.counts["true_positives"] += 1
+        elif collapsed:
+            self.counts["false_alarms"] += 1
+        elif truly:
+            self.counts["false_negatives"] += 1
+
+    def _collapsible(self, x: float, y: float, force_n: float) -> bool:
+        return self._press.press(x, y, force_n).collapsible
+
+    # Results --------------------------------------------------------------------------------------------
+
+    def results(self) -> dict:
+        """The measures of one run, as EVALUATION's `results.json` names them."""
+        counts, truth, start = self.counts, self._truth, self._start
+        found, wrong, lost = counts["true_positives"], counts["false_alarms"], counts["false_negatives"]
+        distance = float(truth.p_WB[0] - start.p_WB[0]) if truth is not None and start is not None else 0.0
+        drift = float(np.hypot(*self._estimate_error[:2])) / abs(distance) if abs(distance) > 0.2 else None
+        n = max(self._squares[2], 1.0)
+        return {
+            "success": not self.failure,
+            "failure": self.failure or None,
+            "distance_m": distance,
+            **counts,
+            "precision": found / (found + wrong) if found + wrong else None,
+            "recall": found / (found + lost) if found + lost else None,
+            "displacement_at_detection_m": self.displacement,
+            "unload_s": self.unload,
+            "min_support_margin_m": None if np.isinf(self.margin) else float(self.margin),
+            "max_tilt_rad": self.tilt,
+            "probe_force": self.probe_force,
+            "probe_rmse_n": {
+                "true_vs_mpc": float(np.sqrt(self._squares[0] / n)),
+                "estimate_vs_true": float(np.sqrt(self._squares[1] / n)),
+            },
+            "estimator": {
+                "xy_drift_per_m": drift,
+                "z_error_max_m": self.z_error,
+                "tilt_error_max_rad": self.tilt_error,
+            },
+            "mpc_violation_max": self.violation,
+            "torque_saturation_s": self.saturated_s,
+            "energy_j": self.energy,
+        }
+
+
+def _margin(truth: SimTruth, leg: int) -> float:
+    """Distance of the true centre of mass from the edges of the other feet's triangle [m]."""
+    corners = np.array([truth.p_WF[other, :2] for other in _ANTICLOCKWISE if other != leg])
+    edges = np.roll(corners, -1, axis=0) - corners
+    offset = truth.com_W[:2] - corners
+    cross = edges[:, 0] * offset[:, 1] - edges[:, 1] * offset[:, 0]
+    return float((cross / np.hypot(edges[:, 0], edges[:, 1])).min())
+
+
+def _up(quat: np.ndarray) -> np.ndarray:
+    """World's up axis in the trunk, from a quaternion (w, x, y, z)."""
+    w, x, y, z = quat
+    return np.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
+
+
