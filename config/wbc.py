@@ -35,4 +35,5 @@ class Wbc:
     posture_kp: float = 250.0  # JOINT mode [N m/rad]
     posture_kd: float = 6.0  # JOINT mode [N m s/rad]
     damping_kd: float = 3.0  # DAMP mode [N m s/rad]
+    friction_speed: float = 0.2  # joint speed over which compensated Coulomb friction turns round [rad/s]
     failures_max: int = 5  # successive QP failures before damping

@@ -28,10 +28,14 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser("surefoot", description="A quadruped that tests the ground before it trusts it.")
+    parser = argparse.ArgumentParser(
+        "surefoot", description="A quadruped that tests the ground before it trusts it."
+    )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     graded = commands.add_parser(
-        "eval", help="grade the stack in lockstep", epilog="example: surefoot eval planks --seeds 0:10 --jobs 2 --out out"
+        "eval",
+        help="grade the stack in lockstep",
+        epilog="example: surefoot eval planks --seeds 0:10 --jobs 2 --out out",
     )
     graded.add_argument("scenario", help="a deployment file, or its name in config/ (flat, planks)")
     graded.add_argument("--seeds", default="0:10", help="first:last+1, or a list such as 0,3,7")

@@ -31,6 +31,8 @@ class Wbc(Component):
         self._reach = robot.nominal.max_leg_length
         self._qp = WholeBodyQp(robot, self._settings)
         self._stand_q = np.tile(robot.nominal.stand_q, 4)
+        self._friction = np.array(robot.per_joint("friction"))
+        self._damping = np.array(robot.per_joint("damping"))
         self._failures = 0
         self._last_force = np.zeros((4, 3))
 
@@ -95,7 +97,7 @@ class Wbc(Component):
         )
         crept = reference.p_WF - estimate.p_WF
         acceleration = settings.stance_kp * crept - settings.stance_kd * estimate.v_WF
-        kp, q_ref, dq_ref = np.zeros(12), estimate.q.copy(), np.zeros(12)
+        kp, q_ref, dq_ref = np.zeros(12), estimate.q.copy(), self._still_feet(estimate, R)
         if reference.swing_leg >= 0 and not stance[reference.swing_leg]:
             leg = reference.swing_leg
             own = slice(3 * leg, 3 * leg + 3)
@@ -114,6 +116,9 @@ class Wbc(Component):
                 return self._damp(t, str(error))
             solver, force = str(error), self._last_force * stance[:, None]
             tau = qp.torques(force, np.zeros(18))
+        # What the motors lose in the joints before it reaches the ground: as much as a light foot presses with.
+        loss = self._friction * np.tanh(dq_ref / settings.friction_speed) + self._damping * dq_ref
+        tau = tau + np.repeat(stance, 3) * loss
         return JointCommand(
             t=t,
             valid=True,
@@ -142,6 +147,14 @@ class Wbc(Component):
         x = policy.x[k] + share * (policy.x[k + 1] - policy.x[k])
         R = matrix_of_rpy(x[9:12])
         return x[6:9], R, R @ policy.v[k, :3], R @ policy.v[k, 3:6], policy.u[k, :12].reshape(4, 3)
+
+    def _still_feet(self, estimate: StateEstimate, R: np.ndarray) -> np.ndarray:
+        """Joint velocities (12,) [rad/s] that keep the feet still in the world while the base moves."""
+        p_BF = (estimate.p_WF - estimate.p_WB) @ R
+        carried = R.T @ estimate.v_WB_W + np.cross(estimate.omega_WB_B, p_BF)
+        J = self._legs.jacobian(estimate.q.reshape(4, 3))
+        damped = J @ J.swapaxes(1, 2) + 1e-4 * np.eye(3)
+        return -(J.swapaxes(1, 2) @ np.linalg.solve(damped, carried[..., None])).ravel()
 
     def _swing(self, t: float, estimate: StateEstimate, reference: MotionReference, R: np.ndarray):
         """Task acceleration of the swing foot, and its joint references by inverse kinematics."""

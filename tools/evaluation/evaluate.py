@@ -109,7 +109,9 @@ def _totals(runs: list[dict], whole: list[dict]) -> list[str]:
     if moved:
         lines.append(f"- displacement at detection, cm: median {_cm(moved, 50)}, p95 {_cm(moved, 95)}")
     if unload:
-        lines.append(f"- unloaded after detection, ms: median {1e3 * np.median(unload):.0f}, max {1e3 * max(unload):.0f}")
+        lines.append(
+            f"- unloaded after detection, ms: median {1e3 * np.median(unload):.0f}, max {1e3 * max(unload):.0f}"
+        )
     return lines
 
 

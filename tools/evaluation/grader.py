@@ -7,7 +7,15 @@ from functools import lru_cache
 import numpy as np
 
 from surefoot.bus.message import Message
-from surefoot.bus.messages import FsmEvent, JointCommand, LegStatus, MotionReference, Policy, SimTruth, StateEstimate
+from surefoot.bus.messages import (
+    FsmEvent,
+    JointCommand,
+    LegStatus,
+    MotionReference,
+    Policy,
+    SimTruth,
+    StateEstimate,
+)
 from surefoot.config.deployment import Deployment
 from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
 
@@ -48,7 +56,8 @@ class Grader:
         self._lifting: tuple[int, float] | None = None
         self._forces: list[tuple[float, ...]] = []
         self.counts = dict.fromkeys(
-            ("footholds", "probes", "candidates_tried", "collapses_detected", "missed_collapses", "false_alarms"), 0
+            ("footholds", "probes", "candidates_tried", "collapses_detected", "missed_collapses", "false_alarms"),
+            0,
         )
         self.counts |= dict.fromkeys(("late_collapses", "true_positives", "false_negatives"), 0)
         self.displacement: list[float] = []
@@ -283,5 +292,3 @@ def _up(quat: np.ndarray) -> np.ndarray:
     """World's up axis in the trunk, from a quaternion (w, x, y, z)."""
     w, x, y, z = quat
     return np.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
-
-
