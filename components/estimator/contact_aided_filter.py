@@ -97,7 +97,13 @@ class ContactAidedFilter:
         diagonal[_BA] += settings.acc_bias_rate**2 * dt
 
     def update(
-        self, p_BF: np.ndarray, J_B: np.ndarray, stance: np.ndarray, foot_rate: np.ndarray, dt: float
+        self,
+        p_BF: np.ndarray,
+        J_B: np.ndarray,
+        stance: np.ndarray,
+        foot_rate: np.ndarray,
+        dt: float,
+        rolling_W: np.ndarray | float = 0.0,
     ) -> np.ndarray:
         """Correct with the leg kinematics of stance feet; feet in the air follow the base.
 
@@ -107,6 +113,7 @@ class ContactAidedFilter:
             stance: (4,) feet that may hold the base.
             foot_rate: (4,) random walk of each stance foot [m/sqrt(s)].
             dt: time since the last update [s].
+            rolling_W: (4, 3) velocity of each foot centre that rolls on its contact point [m/s].
 
         Returns:
             (4,) the feet that were used: in stance and not slipping.
@@ -114,6 +121,7 @@ class ContactAidedFilter:
         The residual of a foot is R y - (f - p) = df - dp + [R y]x dtheta + noise.
         """
         arm_W = p_BF @ self.R_WB.T
+        self.p_WF += dt * rolling_W
         self._place_feet(arm_W, stance)
         self._diagonal[_FEET : _FEET + 12] += np.repeat(stance * foot_rate**2 * dt, 3)
         residual = arm_W - (self.p_WF - self.p_WB)

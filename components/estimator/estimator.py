@@ -81,7 +81,7 @@ class Estimator(Component):
         probing = status == LegStatus.PROBING
         stance = contact & ((status == LegStatus.STANCE) | probing)
         rate = np.where(probing, self._settings.probing_rate, self._settings.stance_rate)
-        self._filter.update(p_BF, J_B, stance, rate, self._dt)
+        self._filter.update(p_BF, J_B, stance, rate, self._dt, self._rolling(q, dq))
         healthy = self._guard(state, p_BF)
         self._publish(state, p_BF, J_B, dq, contact, force_W, healthy, outbox)
 
@@ -106,6 +106,17 @@ class Estimator(Component):
         self._filter.start(state.acc_B, p_BF, self._foot_radius)
         self._detector.assume(np.ones(4, bool))
         self._contact_WF = self._filter.p_WB + p_BF @ self._filter.R_WB.T
+
+    def _rolling(self, q: np.ndarray, dq: np.ndarray) -> np.ndarray:
+        """(4, 3) velocity of the foot centres in the world when the feet roll on the ground without slip [m/s].
+
+        The foot is a sphere of radius r, fixed to the calf: its centre moves with omega x r n. A leg that turns
+        by 1 rad over its foot rolls it on by r, which is 7 % of the way of the hip above it.
+        """
+        f = self._filter
+        knee = dq[:, 1] + dq[:, 2]
+        omega_B = np.stack([dq[:, 0], np.cos(q[:, 0]) * knee, np.sin(q[:, 0]) * knee], axis=1) + f.omega_B
+        return np.cross(omega_B @ f.R_WB.T, self._foot_radius * self._normal.normal_W)
 
     def _contacts(self, state: HardwareState, J_B: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Contact flags (4,) and filtered forces in the world (4, 3) [N], eq. (7)."""

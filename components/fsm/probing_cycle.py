@@ -376,7 +376,8 @@ class ProbingCycle:
         """Contact: the foot stands where it is, and its position is stored for the collapse test."""
         leg = self._leg
         feet = now.estimate.p_WF.copy()
-        self._event("contact", f"{now.normal_force(leg):.0f} N", now, feet[leg])
+        off = 1e2 * (feet[leg] - self.reference.swing_to)[:2] @ self._direction
+        self._event("contact", f"{now.normal_force(leg):.0f} N, {off:+.1f} cm along the walk", now, feet[leg])
         status = self.reference.leg_status.copy()
         trusted = self.state == State.RETURN_SAFE or not self._settings.probing
         status[leg] = LegStatus.STANCE if trusted else LegStatus.PROBING

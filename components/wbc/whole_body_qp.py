@@ -151,7 +151,11 @@ class WholeBodyQp:
         for leg in range(4):
             rows = slice(6 + 3 * leg, 9 + 3 * leg)
             wanted = task.foot_acceleration_W[leg] - self._bias[leg]
-            self._box_lower[_NV + 3 * leg + 2] = settings.force_min_n if task.stance[leg] else 0.0
+            # f = 0 of a swing leg must not lie on the edge of its own inequalities: a problem without an
+            # interior is what an interior-point method calls infeasible.
+            on_ground = task.stance[leg]
+            self._box_lower[_NV + 3 * leg + 2] = settings.force_min_n if on_ground else -1.0
+            self._upper[4 * leg : 4 * leg + 4] = 0.0 if on_ground else 1.0
             if task.stance[leg]:
                 A[rows, :_NV], b[rows] = self.J[leg], wanted
             else:

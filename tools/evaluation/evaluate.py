@@ -104,7 +104,8 @@ def _totals(runs: list[dict], whole: list[dict]) -> list[str]:
         f"- true against MPC's force, RMSE N: {_list(run['probe_rmse_n']['true_vs_mpc'] for run in whole)}",
         f"- estimate against truth, RMSE N: {_list(run['probe_rmse_n']['estimate_vs_true'] for run in whole)}",
         f"- drift of x, y per metre: {_list(drift, 3)}",
-        f"- largest tilt error, degrees: {_list(np.rad2deg([r['estimator']['tilt_error_max_rad'] for r in whole]))}",
+        "- largest tilt error, degrees: "
+        + _list(np.rad2deg([r["estimator"]["tilt_error_max_rad"] for r in whole])),
     ]
     if moved:
         lines.append(f"- displacement at detection, cm: median {_cm(moved, 50)}, p95 {_cm(moved, 95)}")
