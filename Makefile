@@ -1,4 +1,4 @@
-# `make test` does everything on a fresh machine: environment, dependencies, tests.
+# `make run` and `make test` do everything on a fresh machine: environment, dependencies, then the work.
 PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
@@ -9,7 +9,10 @@ export OMP_NUM_THREADS = 1
 export OPENBLAS_NUM_THREADS = 1
 export MKL_NUM_THREADS = 1
 
-.PHONY: test lint clean
+.PHONY: run test lint clean
+
+run: $(STAMP)
+	$(BIN)/surefoot run config/planks.toml
 
 test: $(STAMP)
 	$(BIN)/python -P -m pytest

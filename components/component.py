@@ -69,6 +69,11 @@ class Outbox:
         self._send = send
         self._boot = boot
 
+    def continue_from(self, counts: dict[str, int]) -> None:
+        """Number on from how many messages each topic has had: a restarted process has predecessors."""
+        for key in self._seq:
+            self._seq[key] = counts.get(key, 0)
+
     def publish(self, key: str, message: Message) -> None:
         """Publish on one of the component's outputs.
 

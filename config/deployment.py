@@ -26,6 +26,7 @@ class Run:
     clock: Literal["simulated", "monotonic"] = "simulated"
     command: str = "forward"  # given by the operator's side once the robot stands; "" waits for one
     namespace: str = "surefoot"  # prefix of every key on the wire
+    epoch_s: float = 0.0  # monotonic clock at t = 0; the supervisor sets it for all processes of a run
     log_dir: str = "log"  # where process logs go, relative to the working directory
 
 

@@ -29,8 +29,8 @@ class Estimator:
 
     # Contact by eq. (7).
     force_filter_hz: float = 30.0  # low-pass of the estimated force
-    contact_on_n: float = 15.0  # above an airborne foot's estimate, below the lightest stance foot
-    contact_off_n: float = 8.0
+    contact_on_n: float = 10.0  # above an airborne foot's estimate, below the lightest stance foot
+    contact_off_n: float = 6.0
     contact_hits: int = 3  # successive positives (Sec. II-D.4)
     contact_every: int = 2  # filter cycles between two looks: 250 Hz
     friction_speed: float = 0.1  # joint speed over which Coulomb friction turns round [rad/s]

@@ -39,6 +39,7 @@ class Fsm:
     swing_v_lift: float = 0.1  # [m/s]
     swing_v_touch: float = 0.1  # slow: an impact is itself a probe [m/s]
     contact_armed: float = 0.6  # share of the swing after which contact counts as early touch-down
+    early_contact_n: float = 25.0  # what counts as contact before the touch-down is due [N]
     descend_m: float = 0.12  # below the expected ground, then the foothold is given up
 
     # Probing.

@@ -30,7 +30,7 @@ class Wbc:
     friction: float = 0.35  # pyramid inside the paper's cone of 0.5
     force_min_n: float = 10.0  # a lighter stance foot creeps: joint friction alone is worth 3 N at the foot
     force_max_n: float = 240.0
-    joint_kp: float = 10.0  # of swing legs, on the robot [N m/rad]
+    joint_kp: float = 30.0  # of swing legs, on the robot [N m/rad]
     joint_kd: float = 1.0  # of all legs, on the robot [N m s/rad]
     posture_kp: float = 250.0  # JOINT mode [N m/rad]
     posture_kd: float = 6.0  # JOINT mode [N m s/rad]

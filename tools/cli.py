@@ -11,6 +11,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     # Before numpy is imported: its threads would fight the control chain for the cores.
     os.environ.setdefault(_name, "1")
 
+from surefoot.bus.errors import BusError  # noqa: E402
 from surefoot.config.typed_toml import ConfigError  # noqa: E402
 
 
@@ -20,7 +21,7 @@ def main(arguments: list[str] | None = None) -> int:
     call = parser.parse_args(arguments)
     try:
         return call.run(call)
-    except (ConfigError, ValueError, KeyError) as error:
+    except (ConfigError, BusError, ValueError, KeyError) as error:
         print(f"surefoot: {error.args[0] if error.args else error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
@@ -45,6 +46,32 @@ def _parser() -> argparse.ArgumentParser:
     graded.add_argument("--limit", type=float, default=1200.0, help="simulated seconds that count as a time-out")
     graded.add_argument("--out", type=Path, required=True, help="folder for results.json and summary.md")
     graded.set_defaults(run=_eval)
+    run = commands.add_parser(
+        "run", help="start every process of a deployment", epilog="example: surefoot run planks"
+    )
+    run.add_argument("config", nargs="?", default="planks", help="a deployment file, or its name in config/")
+    run.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
+    run.add_argument(
+        "--for", dest="seconds", type=float, default=0.0, help="end after this much of the run's time"
+    )
+    run.add_argument("--plain", action="store_true", help="lines instead of a screen")
+    run.set_defaults(run=_run)
+    child = commands.add_parser("child", help="run one process of a deployment in the foreground")
+    child.add_argument("config")
+    child.add_argument("name", help="io, estimator, wbc, mpc, fsm, trajopt or elevation_map")
+    child.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    child.set_defaults(run=_child)
+    command = commands.add_parser("command", help="command the robot of a running stack")
+    command.add_argument("command", help="stand, sit, forward, backward, left, right, stop or damp")
+    command.add_argument("--namespace", default="surefoot")
+    command.set_defaults(run=_command)
+    restart = commands.add_parser("restart", help="restart one process of a running stack")
+    restart.add_argument("name")
+    restart.add_argument("--namespace", default="surefoot")
+    restart.set_defaults(run=_restart)
+    status = commands.add_parser("status", help="health of a running stack, once")
+    status.add_argument("--namespace", default="surefoot")
+    status.set_defaults(run=_status)
     topics = commands.add_parser("topics", help="list every topic, its type, writer and rate")
     topics.set_defaults(run=_topics)
     return parser
@@ -59,6 +86,84 @@ def _eval(call: argparse.Namespace) -> int:
     print(summary(results))
     print(f"written to {call.out}")
     return 0 if all(run["success"] for run in results["runs"]) else 1
+
+
+def _run(call: argparse.Namespace) -> int:
+    from surefoot.config.deployment import load_deployment
+    from surefoot.tools.live_run import live_run
+
+    path = _deployment_file(call.config)
+    return live_run(path, call.set, load_deployment(path, call.set), call.seconds, call.plain)
+
+
+def _child(call: argparse.Namespace) -> int:
+    from surefoot.components.clock_master import ClockMaster
+    from surefoot.components.runner import HubRunner, Runner
+    from surefoot.config.deployment import load_deployment
+
+    deployment = load_deployment(_deployment_file(call.config), call.set)
+    if call.name != "io":
+        return Runner(deployment, call.name).run()
+    return (
+        ClockMaster(deployment).run() if deployment.run.clock == "simulated" else HubRunner(deployment, "io").run()
+    )
+
+
+def _command(call: argparse.Namespace) -> int:
+    from surefoot.components.clock_messages import REQUEST
+    from surefoot.components.fsm.fsm import COMMANDS
+
+    if call.command not in COMMANDS:
+        raise ValueError(f"unknown command {call.command!r}; there are {', '.join(COMMANDS)}")
+    _say_on_bus(call.namespace, REQUEST, call.command)
+    return 0
+
+
+def _restart(call: argparse.Namespace) -> int:
+    from surefoot.bus.topics import PROCESSES
+    from surefoot.tools.supervisor import REQUEST
+
+    if call.name not in PROCESSES or call.name == "io":
+        names = ", ".join(name for name in PROCESSES if name != "io")
+        raise ValueError(f"cannot restart {call.name!r}; processes that can be: {names} (io holds robot and bus)")
+    _say_on_bus(call.namespace, REQUEST, f"restart {call.name}")
+    return 0
+
+
+def _say_on_bus(namespace: str, key: str, text: str) -> None:
+    import time
+
+    from surefoot.bus.session import Session, socket_path
+
+    session = Session(namespace, connect_ms=2000)
+    session.put(key, text.encode())
+    time.sleep(0.3)  # let it leave before the session closes
+    session.close()
+    print(f"told {socket_path(namespace)}: {text}")
+
+
+def _status(call: argparse.Namespace) -> int:
+    import time
+
+    from surefoot.bus.codec import decode
+    from surefoot.bus.messages import ProcessStatus
+    from surefoot.bus.session import Session, socket_path
+    from surefoot.bus.topics import PROCESSES
+
+    session = Session(call.namespace, connect_ms=2000)
+    heard: dict[str, ProcessStatus] = {}
+    session.subscribe("status/*", lambda key, payload: heard.update({key[7:]: decode(ProcessStatus, payload)}))
+    time.sleep(1.5)
+    session.close()
+    print(f"connected to {socket_path(call.namespace)}")
+    for name in PROCESSES:
+        status = heard.get(name)
+        if status is None:
+            print(f"{name:14s} silent for 1.5 s: is its process running?")
+            continue
+        figures = f"{status.rate_hz:6.0f} Hz  p50 {status.step_p50_ms:6.2f} ms  p99 {status.step_p99_ms:6.2f} ms"
+        print(f"{name:14s} {status.life:13s} {figures}  bad {status.bad_messages}  {status.reason}")
+    return 0 if len(heard) == len(PROCESSES) else 1
 
 
 def _topics(call: argparse.Namespace) -> int:

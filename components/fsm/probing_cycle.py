@@ -342,7 +342,9 @@ class ProbingCycle:
         settings, reference, leg = self._settings, self.reference, self._leg
         if now.estimate.contact[leg]:
             armed = reference.swing_t0 + settings.contact_armed * (reference.swing_t1 - reference.swing_t0)
-            if now.t >= armed:
+            # In mid-swing the leg's own inertia looks like a light contact: only a firm one counts as early.
+            due = now.t >= reference.swing_t1 - _LAND_AHEAD_S
+            if due or (now.t >= armed and now.normal_force(leg) > settings.early_contact_n):
                 self._touched(now)
                 return
         if now.t >= reference.swing_t1 - _LAND_AHEAD_S:

@@ -21,6 +21,7 @@ from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
 
 FALL_TILT = np.deg2rad(45.0)
 STUCK_S = 5.0  # without contact change or support below the surface
+_STOPPED_S = 3.0  # a machine that rests this long waits for a new direction
 _BELOW_M = 0.06  # a foot this far below the surface is in a hole
 _ANTICLOCKWISE = (0, 2, 3, 1)
 
@@ -40,6 +41,7 @@ class Grader:
         self._press = PressTest(deployment)
         self._verdict = lru_cache(maxsize=None)(self._collapsible)
         self.failure, self.passed = "", False
+        self._resting_s = 0.0
         self._truth: SimTruth | None = None
         self._estimate: StateEstimate | None = None
         self._reference: MotionReference | None = None
@@ -78,6 +80,7 @@ class Grader:
             self._estimate = message
         elif key == "fsm/reference":
             self._reference = message
+            self._resting_s = self._resting_s + 0.004 if message.state == "STOPPED" else 0.0
         elif key == "mpc/policy" and message.valid:
             self._policy = message
             for name, value in zip(message.constraint, message.violation, strict=True):
@@ -91,7 +94,7 @@ class Grader:
     def over(self) -> bool:
         """The run is decided."""
         reference = self._reference
-        done = reference is not None and reference.finished
+        done = reference is not None and (reference.finished or self._resting_s > _STOPPED_S)
         return bool(self.failure) or (self.passed and self._terrain != "flat") or done
 
     def finish(self, t: float, limit_s: float) -> None:

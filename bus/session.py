@@ -1,0 +1,118 @@
+"""The Zenoh session of one process: the only module that imports zenoh.
+
+The process of `io` is the hub, a router on a Unix socket in a folder that only its user may enter; every
+other process is its client. Multicast and gossip are off: nothing leaves the machine.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import zenoh
+
+from surefoot.bus.errors import BusError
+
+_CONNECT_MS = 10_000
+
+
+def socket_path(namespace: str) -> Path:
+    """Where the bus of a namespace listens; one folder a user and namespace."""
+    return Path(tempfile.gettempdir()) / f"surefoot-{os.getuid()}" / f"{namespace}.sock"
+
+
+class Session:
+    """Publishes and subscribes bytes under a namespace.
+
+    Publishing blocks when a queue is full, so that nothing is lost between processes of one machine.
+    """
+
+    def __init__(self, namespace: str, hub: bool = False, connect_ms: int = _CONNECT_MS):
+        """Open the hub, or connect to it.
+
+        Raises:
+            BusError: no hub answers, or another hub already runs under this namespace.
+        """
+        self._prefix = namespace
+        path = socket_path(namespace)
+        endpoint = f"unixsock-stream/{path}"
+        if hub:
+            _make_room(path, namespace)
+        try:
+            self._session = zenoh.open(zenoh.Config.from_json5(json.dumps(_config(endpoint, hub, connect_ms))))
+        except zenoh.ZError as error:
+            what = "cannot listen on" if hub else "nothing answers on"
+            raise BusError(
+                f"{what} {path}: is `surefoot run` running with namespace {namespace!r}? ({error})"
+            ) from None
+        self._publishers: dict[str, zenoh.Publisher] = {}
+        self._kept: list[object] = []
+
+    def put(self, key: str, payload: bytes) -> None:
+        """Publish bytes on a key of the namespace."""
+        publisher = self._publishers.get(key)
+        if publisher is None:
+            publisher = self._session.declare_publisher(
+                f"{self._prefix}/{key}", congestion_control=zenoh.CongestionControl.BLOCK
+            )
+            self._publishers[key] = publisher
+        publisher.put(payload)
+
+    def subscribe(self, key: str, receive: Callable[[str, bytes], None]) -> None:
+        """Call `receive(key, bytes)` for every message; it must only store, it runs in the session's thread."""
+        skip = len(self._prefix) + 1
+
+        def on_sample(sample: zenoh.Sample) -> None:
+            receive(str(sample.key_expr)[skip:], sample.payload.to_bytes())
+
+        self._kept.append(self._session.declare_subscriber(f"{self._prefix}/{key}", on_sample))
+
+    def close(self) -> None:
+        """Leave the bus."""
+        self._session.close()
+
+
+def _make_room(path: Path, namespace: str) -> None:
+    """The socket's folder, closed to others; a socket file left by a process that is gone is removed."""
+    path.parent.mkdir(mode=0o700, exist_ok=True)
+    lock = path.with_suffix(".pid")
+    if lock.exists():
+        owner = lock.read_text().strip()
+        if owner.isdigit() and int(owner) != os.getpid() and _alive(int(owner)):
+            raise BusError(
+                f"process {owner} already serves namespace {namespace!r}: stop it, or set another run.namespace"
+            )
+    path.unlink(missing_ok=True)
+    path.with_name(path.name + ".lock").unlink(missing_ok=True)
+    lock.write_text(str(os.getpid()))
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
+
+
+def _config(endpoint: str, hub: bool, connect_ms: int) -> dict:
+    config: dict = {
+        "mode": "router" if hub else "client",
+        "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
+        "transport": {"shared_memory": {"enabled": False}, "link": {"tx": {"lease": 2000, "keep_alive": 4}}},
+    }
+    if hub:
+        config["listen"] = {"endpoints": [endpoint]}
+    else:
+        config["connect"] = {
+            "endpoints": [endpoint],
+            "timeout_ms": connect_ms,
+            "exit_on_failure": True,
+            "retry": {"period_init_ms": 50, "period_max_ms": 200, "period_increase_factor": 1},
+        }
+    return config

@@ -1,0 +1,70 @@
+"""A process's own health, published twice a second of real time."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+
+import numpy as np
+
+from surefoot.bus.codec import encode
+from surefoot.bus.messages import ProcessStatus
+from surefoot.bus.session import Session
+from surefoot.components.component import Component, Inbox, Life
+
+_PERIOD_S = 0.5
+
+
+class Health:
+    """Counts steps and tells the bus.
+
+    Attributes:
+        life, reason: what the process is doing, and in words why nothing moves.
+        overruns: deadlines missed.
+    """
+
+    def __init__(self, component: Component, session: Session):
+        self.life, self.reason = Life.INIT, ""
+        self.overruns = self.steps = 0
+        self._component, self._session = component, session
+        self._recent: deque[float] = deque(maxlen=2000)
+        self._told, self._told_t, self._told_steps = time.monotonic(), 0.0, 0
+        self._seq = 0
+
+    def stepped(self, step_ms: float) -> None:
+        """Note one step's wall time."""
+        self.steps += 1
+        self._recent.append(step_ms)
+
+    def tell(self, t: float, inbox: Inbox, bad: int, now: bool = False) -> None:
+        """Publish the status if half a second has passed, or `now`."""
+        clock = time.monotonic()
+        if not now and clock - self._told < _PERIOD_S:
+            return
+        passed = t - self._told_t
+        rate = (self.steps - self._told_steps) / passed if passed > 0.0 else 0.0
+        self._told, self._told_t, self._told_steps = clock, t, self.steps
+        keys = self._component.inputs
+        ages = [-1.0 if (message := inbox.latest(key)) is None else t - message.t for key in keys]
+        recent = np.array(self._recent) if self._recent else np.zeros(1)
+        status = ProcessStatus(
+            t=t,
+            valid=True,
+            seq=self._seq,
+            process=self._component.name,
+            life=self.life.value,
+            reason=self.reason,
+            pid=os.getpid(),
+            steps=self.steps,
+            rate_hz=rate,
+            step_p50_ms=float(np.percentile(recent, 50)),
+            step_p99_ms=float(np.percentile(recent, 99)),
+            step_max_ms=float(recent.max()),
+            overruns=self.overruns,
+            bad_messages=bad,
+            input=keys,
+            input_age_s=np.array(ages),
+        )
+        self._seq += 1
+        self._session.put(f"status/{self._component.name}", encode(status))
