@@ -44,15 +44,15 @@ class ClockMaster:
         self._parent = os.getppid()
         self._commands: queue.Queue[str] = queue.Queue()
         self._sent = 0
+        self.session.subscribe(
+            clock.REQUEST, lambda key, payload: self._commands.put(payload.decode(errors="replace"))
+        )
         component = component_class("io")(deployment)
         self._health = Health(component, self.session)
         remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
         self._io = _HostedExecutor(component, self.session, self._health)
         self.scheduler = Scheduler({"io": self._io, **remote})
         self._remote = remote
-        self.session.subscribe(
-            clock.REQUEST, lambda key, payload: self._commands.put(payload.decode(errors="replace"))
-        )
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: self._stop.set())
 
@@ -66,12 +66,13 @@ class ClockMaster:
             for executor in self._remote.values():
                 executor.wait_ready()
             self._health.reason = ""
+            self._between()  # a command given before the start is there at t = 0
             end = round(min(self._until_s, 1e9) * NS)
             self.scheduler.run_until(end, self._between)
         except MasterStopped:
             pass
         for name in self._remote:
-            self.session.put(f"{clock.RELEASE}/{name}", clock.pack_release(clock.STOP_NS, {}))
+            self.session.put(f"{clock.RELEASE}/{name}", clock.pack_release(clock.STOP_NS, {}, {}))
         time.sleep(0.1)
         self.session.close()
         return 0
@@ -109,7 +110,8 @@ class RemoteExecutor:
 
     def __init__(self, name: str, master: ClockMaster):
         self._name, self._master = name, master
-        self._pending: tuple[int, bytes] | None = None
+        self._pending: tuple[int, dict[str, int]] | None = None
+        self._before: dict[str, int] = {}
         self._done: queue.Queue[bytes] = queue.Queue()
         self._ready = Event()
         self._lock = Lock()
@@ -123,9 +125,10 @@ class RemoteExecutor:
             self._master.look()
 
     def release(self, t_ns: int, visible: dict[str, int]) -> None:
-        payload = clock.pack_release(t_ns, visible)
         with self._lock:
-            self._pending = (t_ns, payload)
+            self._pending = (t_ns, dict(visible))
+            before = self._before
+        payload = clock.pack_release(t_ns, visible, before)
         self._master.session.put(f"{clock.RELEASE}/{self._name}", payload)
 
     def collect(self) -> dict[str, int]:
@@ -152,8 +155,10 @@ class RemoteExecutor:
         self._ready.set()
         with self._lock:
             pending = self._pending
+            self._before = before = dict(self._master.scheduler.visible) if pending is None else pending[1]
         if pending is not None:
-            self._master.session.put(f"{clock.RELEASE}/{self._name}", pending[1])
+            payload = clock.pack_release(pending[0], pending[1], before)
+            self._master.session.put(f"{clock.RELEASE}/{self._name}", payload)
 
 
 class _HostedExecutor:

@@ -14,14 +14,20 @@ STOP_NS = -1
 """Release time that means: deactivate and end."""
 
 
-def pack_release(t_ns: int, visible: dict[str, int]) -> bytes:
-    """A release at t_ns with the count of visible messages of every topic."""
-    return msgpack.packb([t_ns, visible])
+def pack_release(t_ns: int, visible: dict[str, int], before: dict[str, int]) -> bytes:
+    """A release at t_ns.
+
+    Args:
+        t_ns: its time.
+        visible: how many messages of every topic are visible.
+        before: how many were visible when the process said hello; it may have missed those.
+    """
+    return msgpack.packb([t_ns, visible, before])
 
 
-def unpack_release(payload: bytes) -> tuple[int, dict[str, int]]:
-    t_ns, visible = msgpack.unpackb(payload)
-    return t_ns, visible
+def unpack_release(payload: bytes) -> tuple[int, dict[str, int], dict[str, int]]:
+    t_ns, visible, before = msgpack.unpackb(payload)
+    return t_ns, visible, before
 
 
 def pack_done(t_ns: int, counts: dict[str, int], step_ms: float) -> bytes:

@@ -79,7 +79,7 @@ class Runner:
         while not self._stop.is_set():
             self._health.tell(t, self.inbox, self._buffers.bad)
             try:
-                t_ns, visible = clock.unpack_release(releases.get(timeout=_ORPHAN_LOOK_S))
+                t_ns, visible, before = clock.unpack_release(releases.get(timeout=_ORPHAN_LOOK_S))
             except queue.Empty:
                 if os.getppid() != self._parent:
                     return
@@ -91,6 +91,7 @@ class Runner:
                 return
             if last is None:
                 self._outbox.continue_from(visible)
+                self._buffers.start_after(before)
             if last == t_ns:
                 continue
             last, t = t_ns, t_ns / NS

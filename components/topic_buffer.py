@@ -28,13 +28,18 @@ class TopicBuffers:
         self.last_error = ""
         self._waiting: dict[str, deque[bytes]] = {key: deque(maxlen=_KEPT) for key in keys}
         self._ready: dict[str, deque[Message]] = {key: deque(maxlen=_KEPT) for key in keys}
-        self._next: dict[str, int | None] = dict.fromkeys(keys)
+        self._next = dict.fromkeys(keys, 0)
 
     def put(self, key: str, payload: bytes) -> None:
         """Store one message (the bus's thread)."""
         with self.arrived:
             self._waiting[key].append(payload)
             self.arrived.notify_all()
+
+    def start_after(self, counts: dict[str, int]) -> None:
+        """Do not wait for the first messages of each topic: they were published before this reader was there."""
+        for key in self._next:
+            self._next[key] = counts.get(key, 0)
 
     def deliver_all(self, inbox: Inbox) -> int:
         """Hand over everything that has arrived; how many messages that were."""
@@ -50,22 +55,19 @@ class TopicBuffers:
     def deliver_visible(self, visible: dict[str, int], inbox: Inbox, timeout_s: float) -> str:
         """Hand over exactly the messages with sequence numbers below the counts in `visible`.
 
-        Waits for those that are still on their way. A reader that joins late begins with what it has.
+        Waits for those that are still on their way; one that does not come is skipped.
 
         Returns:
             What did not come in time, in words; empty when all is there.
         """
+        lost = ""
         for key in self._waiting:
             wanted = visible.get(key, 0)
-            if self._next[key] is None:
-                # The first release: everything before it belongs to the past, unless it is here already.
-                self._decode(key)
-                ready = self._ready[key]
-                self._next[key] = wanted if not (ready and ready[0].seq < wanted) else ready[0].seq
             while self._next[key] < wanted:
                 if not self._take(key, wanted, inbox) and not self._wait(key, timeout_s):
-                    return f"{key}: message {self._next[key]} of {wanted} did not arrive in {timeout_s:g} s"
-        return ""
+                    lost = f"{key}: message {self._next[key]} of {wanted} did not arrive in {timeout_s:g} s"
+                    self._next[key] = wanted
+        return lost
 
     def _take(self, key: str, wanted: int, inbox: Inbox) -> bool:
         """Hand over what is here up to the count; true when there was any."""

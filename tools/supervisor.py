@@ -79,10 +79,14 @@ class Supervisor:
             self._start("io")
             self._session = Session(self._deployment.run.namespace)
             self._listen()
+            self._await_hub()
+            if self._deployment.run.clock == "simulated":
+                self._command(self._deployment.run.command)
             for name in PROCESSES:
                 if name != "io":
                     self._start(name)
-            self._command(self._deployment.run.command)
+            if self._deployment.run.clock == "monotonic":
+                self._command(self._deployment.run.command)
             while True:
                 reason = until(self.picture) or self._reconcile()
                 each(self.picture)
@@ -152,6 +156,12 @@ class Supervisor:
             watched.restarts += 1
             self._start(watched.name)
         return ""
+
+    def _await_hub(self) -> None:
+        """Until io has spoken: what is published before its subscriptions stand is lost."""
+        io = self.picture.processes["io"]
+        while io.status is None and io.popen.poll() is None:
+            time.sleep(_LOOK_S)
 
     def _listen(self) -> None:
         session = self._session
