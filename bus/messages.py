@@ -123,6 +123,7 @@ class MotionReference(Message):
     swing_t1: float = number("touch-down", "s")
     swing_from: np.ndarray = array(3, doc="foot centre at lift-off, in W", unit="m")
     swing_to: np.ndarray = array(3, doc="foot centre at touch-down, in W", unit="m")
+    swing_v_from: np.ndarray = array(3, doc="foot velocity at the start of a swing that does not land", unit="m/s")
     swing_height: float = number("apex above the higher of the two ends", "m")
     swing_v_lift: float = number("speed along the normal at lift-off", "m/s")
     swing_v_touch: float = number("speed against the normal at touch-down and after", "m/s")

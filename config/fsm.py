@@ -26,15 +26,15 @@ class Fsm:
     base_reference: Literal["polygon", "stride"] = "polygon"  # while probing: inside the triangle, or the stride's
     margin_m: float = 0.04  # alpha of eq. (5)
     margin_extra_m: float = 0.01  # the base is sent this much further inside
-    shift_s: float = 0.5  # least duration
-    shift_speed: float = 0.15  # mean speed of longer shifts [m/s]
+    shift_s: float = 0.4  # least duration
+    shift_speed: float = 0.2  # mean speed of longer shifts [m/s]
     shift_margin_m: float = 0.035  # lift-off once the centre of mass is this far inside ...
-    shift_rest_speed: float = 0.05  # ... slower than this [m/s] ...
-    shift_hold_s: float = 0.06  # ... for this long
+    shift_rest_speed: float = 0.08  # ... slower than this [m/s] ...
+    shift_hold_s: float = 0.04  # ... for this long
     shift_timeout_s: float = 3.0
 
     # Swing.
-    swing_s: float = 0.6
+    swing_s: float = 0.5
     swing_height_m: float = 0.08
     swing_v_lift: float = 0.1  # [m/s]
     swing_v_touch: float = 0.1  # slow: an impact is itself a probe [m/s]
@@ -48,15 +48,17 @@ class Fsm:
     fixed_force_n: float = 0.0  # > 0: this normal force instead of the optimised envelope
     dwell_s: float = 0.1  # each force (Sec. II-C)
     blend_s: float = 0.03  # change from one force to the next, inside the dwell
-    settle_s: float = 0.03  # from contact to the first force
+    settle_s: float = 0.02  # from contact to the first force
+    unload_s: float = 0.05  # after the last force, before the foot hops on ...
+    unload_n: float = 12.0  # ... it is brought down to this
     collapse_m: float = 0.03  # displacement that is a collapse (Sec. II-D.5)
     held_share: float = 0.8  # a force counts as held above this share of what was asked
 
     # Around the foothold.
     probe_around: bool = True
     around_radius_m: float = 0.025  # the foot pad's radius (Sec. II-D.5)
-    hop_s: float = 0.3
-    hop_height_m: float = 0.035
+    hop_s: float = 0.2
+    hop_height_m: float = 0.02
 
     # After a collapse.
     leg_up_s: float = 0.3

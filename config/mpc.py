@@ -11,3 +11,4 @@ class Mpc:
 
     intervals: int = 67
     interval_s: float = 0.015
+    lead_s: float = 0.015  # the plan begins this far ahead: budget of the solve and way of a command to the motors

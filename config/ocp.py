@@ -19,13 +19,13 @@ class Barrier:
 class Weights:
     """Eq. (2); per node, without a factor of the interval. Base weights are shared by mpc and trajopt."""
 
-    linear_momentum: Vector3 = (15.0, 15.0, 30.0)  # of h/m [1/(m/s)^2]
-    angular_momentum: Vector3 = (10.0, 30.0, 30.0)  # of h/m [1/(m^2/s)^2]
+    linear_momentum: Vector3 = (50.0, 50.0, 200.0)  # of h/m [1/(m/s)^2]
+    angular_momentum: Vector3 = (300.0, 1000.0, 1000.0)  # of h/m [1/(m^2/s)^2]
     # Softer position weights let the support polygon's barrier carry the base to the analytic centre.
     base_position: Vector3 = (2e4, 2e4, 2e4)  # [1/m^2]
     base_rotation: Vector3 = (1000.0, 3000.0, 3000.0)  # [1/rad^2]
     joints: Vector3 = (2.0, 2.0, 1.0)  # hip, thigh, calf [1/rad^2]
-    force: float = 1e-3  # [1/N^2]
+    force: float = 1e-2  # sets the loop's bandwidth: at a tenth of it, delay and noise make the base ring [1/N^2]
     joint_velocity: Vector3 = (0.02, 0.02, 0.01)  # [1/(rad/s)^2]
     foot_position: float = 2000.0  # W_p; a soft one lets the base drag the swing foot [1/m^2]
     foot_velocity: float = 10.0  # W_v [1/(m/s)^2]

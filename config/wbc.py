@@ -23,6 +23,7 @@ class Wbc:
     probe_force_weight: float = 1.0  # the same for the probing foot
     swing_kp: float = 350.0  # [1/s^2]
     swing_kd: float = 37.0  # [1/s]
+    swing_acceleration_max: float = 20.0  # the base feels what the swing leg is given [m/s^2]
     swing_weight: float = 100.0
     acceleration_weight: float = 1e-4
     stance_kp: float = 50.0  # a stance foot that has crept is drawn back [1/s^2]

@@ -26,7 +26,7 @@ from surefoot.config.robot import LEGS, Robot
 
 _UP = np.array([0.0, 0.0, 1.0])
 _ALWAYS = 1e9  # end of a constraint that lasts until the machine takes it away [s]
-_LIFT_AHEAD_S = 0.02  # while the base shift is awaited, lift-off stays this far ahead
+_LIFT_AHEAD_S = 0.10  # lift-off stays this far ahead until the base is ready: the MPC unloads the foot in time
 _LAND_AHEAD_S = 0.03  # while contact is awaited, touch-down stays this far ahead
 _HELD_WINDOW_S = 0.06  # a force is held if its mean over the end of its dwell is
 
@@ -324,16 +324,21 @@ class ProbingCycle:
         elif self._inside_since is None:
             self._inside_since = now.t
         ready = self._inside_since is not None and now.t - self._inside_since >= settings.shift_hold_s
-        if ready and now.t >= reference.base_t1:
-            if self._in_air():
+        if self._in_air():
+            if ready and now.t >= reference.base_t1:
                 self._plan_swing(now.t, self._foothold_W, now, settings.swing_s, settings.swing_height_m)
-            self._lift_off(now, settings.swing_s)
-            self._enter(State.DETECT_CONTACT, now, f"{LEGS[self._leg]} lifts off")
-        elif not self._in_air() and now.t > reference.swing_t0 - _LIFT_AHEAD_S:
+                self._begin_swing(now)
+        elif ready and now.t >= reference.swing_t0:
+            self._begin_swing(now)
+        elif not ready and now.t > reference.swing_t0 - _LIFT_AHEAD_S:
             start = now.t + _LIFT_AHEAD_S
             self.reference = replace(
                 reference, swing_t0=start, swing_t1=start + settings.swing_s, **self._support(start)
             )
+
+    def _begin_swing(self, now: Observation) -> None:
+        self._lift_off(now, self._settings.swing_s)
+        self._enter(State.DETECT_CONTACT, now, f"{LEGS[self._leg]} lifts off")
 
     # DETECT_CONTACT, also of PROBE_AROUND and RETURN_SAFE -----------------------------------------------
 
@@ -403,16 +408,29 @@ class ProbingCycle:
     # PROBE, PROBE_AROUND --------------------------------------------------------------------------------
 
     def _begin_probe(self, now: Observation) -> None:
-        """Eq. (6): every force of the envelope for 100 ms, from the force that is there now."""
+        """Eq. (6): every force of the envelope for 100 ms, from the force that is there now.
+
+        Where the foot is to hop on afterwards, it is unloaded first, and the MPC knows of the hop from the
+        start: a foot that leaves the ground under full load throws the base over.
+        """
         settings = self._settings
-        before = max(now.normal_force(self._leg), 5.0) * self.reference.normal_W
+        normal = self.reference.normal_W
+        before = max(now.normal_force(self._leg), 5.0) * normal
+        forces = [before, *self._envelope_W]
+        begin = now.t + settings.settle_s
+        if settings.probe_around:
+            forces.append(settings.unload_n * normal)
+            if self._around == 0:
+                self._foothold_W = now.estimate.p_WF[self._leg].copy()
+            lift = begin + len(self._envelope_W) * settings.dwell_s + settings.unload_s
+            self._plan_swing(lift, self._around_point(self._around + 1), now, settings.hop_s, settings.hop_height_m)
         self.reference = replace(
             self.reference,
             probe_leg=self._leg,
-            probe_t0=now.t + settings.settle_s,
+            probe_t0=begin,
             probe_dwell_s=settings.dwell_s,
             probe_blend_s=settings.blend_s,
-            probe_force_W=np.vstack([before, self._envelope_W]),
+            probe_force_W=np.array(forces),
         )
         if settings.base_reference == "stride":
             centre = self._target_xy(self.reference.p_WF)
@@ -434,7 +452,10 @@ class ProbingCycle:
             self._force_held(now, self._told, moved)
             self._told += 1
         if self._told == len(self._envelope_W):
-            self._next_point(now)
+            if not settings.probe_around:
+                self._accept(now, "all forces were borne")
+            elif now.t >= self.reference.swing_t0 - 1e-9:
+                self._next_point(now)
 
     def _force_held(self, now: Observation, index: int, moved: float) -> None:
         end = (index + 1) * self._settings.dwell_s
@@ -457,21 +478,17 @@ class ProbingCycle:
 
     def _next_point(self, now: Observation) -> None:
         """PROBE_AROUND: front, back, left, right of the foothold, then back to its centre."""
-        settings = self._settings
-        if not settings.probe_around:
-            self._accept(now, "all forces were borne")
-            return
-        if self._around == 0:
-            self._foothold_W = now.estimate.p_WF[self._leg].copy()
         self._around += 1
-        along = np.append(self._direction, 0.0)
-        left = np.array([-along[1], along[0], 0.0])
-        offset = (along, -along, left, -left, 0.0 * along)[self._around - 1]
-        point = self._foothold_W + settings.around_radius_m * offset
-        self._plan_swing(now.t, point, now, settings.hop_s, settings.hop_height_m)
-        self._lift_off(now, settings.hop_s)
+        self._lift_off(now, self._settings.hop_s)
         what = "back to the foothold" if self._around == 5 else f"point {self._around} around the foothold"
         self._enter(State.PROBE_AROUND, now, what)
+
+    def _around_point(self, number: int) -> np.ndarray:
+        """(3,) where hop number 1..5 goes [m]."""
+        along = np.append(self._direction, 0.0)
+        left = np.array([-along[1], along[0], 0.0])
+        offset = (along, -along, left, -left, 0.0 * along)[number - 1]
+        return self._foothold_W + self._settings.around_radius_m * offset
 
     def _accept(self, now: Observation, reason: str) -> None:
         """The foothold is safe: only now does it replace the old one."""
@@ -512,6 +529,8 @@ class ProbingCycle:
             swing_t1=now.t + settings.leg_up_s,
             swing_from=foot.copy(),
             swing_to=to,
+            # The foot is falling with the ground: to stop it in one tick would throw the base over.
+            swing_v_from=now.estimate.v_WF[leg].copy(),
             swing_lands=False,
         )
         if settings.base_reference == "stride":
@@ -590,6 +609,9 @@ class ProbingCycle:
     def _in_air(self) -> bool:
         return bool((self.reference.leg_status == LegStatus.SWING).any())
 
+    def _probing(self) -> bool:
+        return bool((self.reference.leg_status == LegStatus.PROBING).any())
+
     def _feet_now(self, now: Observation) -> np.ndarray:
         """(4, 3) where the plan starts from: the feet that stand, and the one in the air where it is."""
         feet = self.reference.p_WF.copy()
@@ -624,7 +646,7 @@ class ProbingCycle:
         on = self._settings.support_polygon and self._settings.probing
         return {
             "support_leg": self._leg if on else -1,
-            "support_t0": min(start, self.reference.support_t0) if self._in_air() else start,
+            "support_t0": min(start, self.reference.support_t0) if self._in_air() or self._probing() else start,
             "support_t1": _ALWAYS,
             "support_margin_m": self._settings.margin_m,
         }

@@ -45,6 +45,7 @@ def _height_map() -> np.ndarray:
 
 
 _HEIGHT = _height_map()
+_RUN_OUT = np.array([0.0, 1.0, 0.0, -6.0, 8.0, -3.0])  # unit speed at the start, at rest at the end, back at 0
 _BLEND = np.array([0.0, 0.0, 0.0, 10.0, -15.0, 6.0])  # from 0 to 1, at rest at both ends
 
 
@@ -60,6 +61,7 @@ class SwingSpline:
         self._normal = reference.normal_W
         self._from, self._to = reference.swing_from, reference.swing_to
         self._lands = reference.swing_lands
+        self._v_from = reference.swing_v_from
         self._speed = reference.swing_v_touch if reference.swing_lands else 0.0
         start, end = self._from @ self._normal, self._to @ self._normal
         half = 0.5 * (self.t1 - self.t0)
@@ -79,6 +81,9 @@ class SwingSpline:
         v = (inside * _polynomial(_BLEND, s, 1) / duration)[:, None] * self._along
         a = (inside * _polynomial(_BLEND, s, 2) / duration**2)[:, None] * self._along
         if not self._lands:
+            p = p + duration * _polynomial(_RUN_OUT, s, 0)[:, None] * self._v_from
+            v = v + (inside * _polynomial(_RUN_OUT, s, 1))[:, None] * self._v_from
+            a = a + (inside * _polynomial(_RUN_OUT, s, 2) / duration)[:, None] * self._v_from
             return p, v, a
         second = (s >= 0.5).astype(int)
         coefficients = self._height[second].T

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 import pinocchio as pin
 
-from surefoot.bus.messages import ControlMode, MotionReference, Policy, StateEstimate
+from surefoot.bus.messages import ControlMode, LegStatus, MotionReference, Policy, StateEstimate
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.mpc.motion_sampler import MotionSampler
 from surefoot.components.ocp.centroidal_dynamics import Trajectory, exp_rotations, log_rotations
@@ -17,8 +17,9 @@ from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.ocp.problem import Problem, State, policy_states
 from surefoot.components.ocp.riccati import SolverFailed
 from surefoot.components.robot_model import build_model
-from surefoot.components.robot_model.rotation import matrix_of
+from surefoot.components.robot_model.rotation import exp_rotation, matrix_of
 from surefoot.config.deployment import Deployment
+from surefoot.config.robot import GRAVITY
 
 
 class Mpc(Component):
@@ -63,19 +64,22 @@ class Mpc(Component):
             self._iterate = None
             return
         marks = [perf_counter()]
-        nodes = self._sampler.sample(reference, t)
-        measured = self.measured(estimate)
-        start = self._warm_start(nodes, t)
+        # The policy is acted on only after the solve and the command's way to the motors: plan from there.
+        lead = self.deployment.mpc.lead_s
+        begins = t + lead
+        nodes = self._sampler.sample(reference, begins)
+        measured = self._predict(self.measured(estimate), estimate, self._forces_at(t, reference), lead)
+        start = self._warm_start(nodes, begins)
         marks.append(perf_counter())
         try:
             step = self._problem.iterate(start, nodes, measured)
         except SolverFailed as error:
             self._iterate = None
-            outbox.publish("mpc/policy", Policy(t=t, dt=self._dt, solver=str(error)))
+            outbox.publish("mpc/policy", Policy(t=begins, dt=self._dt, solver=str(error)))
             return
         marks.append(perf_counter())
-        self._iterate, self._contact, self._t = step.iterate, nodes.contact, t
-        self._publish(t, nodes, step, marks, outbox)
+        self._iterate, self._contact, self._t = step.iterate, nodes.contact, begins
+        self._publish(begins, nodes, step, marks, outbox)
 
     def measured(self, estimate: StateEstimate) -> State:
         """The state x of an estimate: momentum from the base's and the joints' velocities."""
@@ -85,6 +89,25 @@ class Mpc(Component):
         v = np.concatenate([R.T @ estimate.v_WB_W, estimate.omega_WB_B, estimate.dq])
         h = pin.computeCentroidalMomentum(self._model, self._data, q, v).vector / self._mass
         return State(h, np.array(estimate.p_WB), R, estimate.q.reshape(4, 3))
+
+    def _forces_at(self, t: float, reference: MotionReference) -> np.ndarray:
+        """(4, 3) forces of the last trajectory about time t, of the feet that stand now [N]."""
+        stance = np.isin(reference.leg_status, (LegStatus.STANCE, LegStatus.PROBING, LegStatus.COLLAPSING))
+        if self._iterate is None:
+            force = np.zeros((4, 3))
+            force[stance, 2] = self._mass * GRAVITY / max(int(stance.sum()), 1)
+            return force
+        step = min(max(int((t - self._t) / self._dt), 0), self._problem.N - 1)
+        return self._iterate.force_W[step] * stance[:, None]
+
+    def _predict(self, now: State, estimate: StateEstimate, force_W: np.ndarray, dt: float) -> State:
+        """The state after `dt` [s] under the forces that act meanwhile: one explicit step of eq. (1c)."""
+        arm = estimate.p_WF - self._data.com[0]
+        h = now.h.copy()
+        h[:3] += dt * (force_W.sum(axis=0) / self._mass - [0.0, 0.0, GRAVITY])
+        h[3:] += dt / self._mass * np.cross(arm, force_W).sum(axis=0)
+        R = now.R_WB @ exp_rotation(dt * estimate.omega_WB_B)
+        return State(h, now.p_WB + dt * estimate.v_WB_W, R, now.q + dt * estimate.dq.reshape(4, 3))
 
     def _warm_start(self, nodes: NodeReference, t: float) -> Trajectory:
         """The last trajectory at the new nodes; where a leg's contact has changed, the reference's input."""

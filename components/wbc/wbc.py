@@ -162,6 +162,8 @@ class Wbc(Component):
         p, v, a = (item[0] for item in SwingSpline(reference).sample(np.array([t])))
         error, speed = p - estimate.p_WF[leg], v - estimate.v_WF[leg]
         acceleration = a + settings.swing_kp * error + settings.swing_kd * speed
+        length = float(np.sqrt(acceleration @ acceleration))
+        acceleration = acceleration * min(1.0, settings.swing_acceleration_max / max(length, 1e-9))
         p_BF = (estimate.p_WF - estimate.p_WB) @ R
         p_BF[leg] = (p - estimate.p_WB) @ R
         q, _ = self._legs.inverse(p_BF)

@@ -21,6 +21,7 @@ from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
 
 FALL_TILT = np.deg2rad(45.0)
 STUCK_S = 5.0  # without contact change or support below the surface
+_FORCES = 6  # of the GRF envelope
 _STOPPED_S = 3.0  # a machine that rests this long waits for a new direction
 _BELOW_M = 0.06  # a foot this far below the surface is in a hole
 _ANTICLOCKWISE = (0, 2, 3, 1)
@@ -169,7 +170,7 @@ class Grader:
             return
         since = truth.t - reference.probe_t0
         index, inside = divmod(since, reference.probe_dwell_s)
-        if 0 <= index < len(reference.probe_force_W) - 1 and inside >= 0.5 * reference.probe_dwell_s:
+        if 0 <= index < _FORCES and inside >= 0.5 * reference.probe_dwell_s:
             self._hold(int(index), truth, reference)
 
     def _hold(self, index: int, truth: SimTruth, reference: MotionReference) -> None:
@@ -202,7 +203,7 @@ class Grader:
             if self._probe_open is not None:
                 self._probe_open["force"] = max(self._probe_open["force"], event.asked_n)
             self._close_force(event)
-            if event.force_index == 5:
+            if event.force_index == _FORCES - 1:
                 self._close_probe(collapsed=False)
         elif event.kind == "collapse":
             counts["collapses_detected"] += 1
