@@ -423,7 +423,9 @@ class ProbingCycle:
             if self._around == 0:
                 self._foothold_W = now.estimate.p_WF[self._leg].copy()
             lift = begin + len(self._envelope_W) * settings.dwell_s + settings.unload_s
-            self._plan_swing(lift, self._around_point(self._around + 1), now, settings.hop_s, settings.hop_height_m)
+            self._plan_swing(
+                lift, self._around_point(self._around + 1), now, settings.hop_s, settings.hop_height_m
+            )
         self.reference = replace(
             self.reference,
             probe_leg=self._leg,

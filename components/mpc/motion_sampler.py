@@ -62,15 +62,18 @@ class MotionSampler:
 
     @staticmethod
     def _swing(reference, times, leg, contact, p_WF, v_WF) -> None:
-        spline = SwingSpline(reference)
+        """From lift-off on the leg carries nothing: a landing is not counted on until it is felt.
+
+        A plan that expects the foot's help in the next moment tips the base towards it, and goes on tipping
+        for as long as the ground is late.
+        """
         in_air = times >= reference.swing_t0
-        if reference.swing_lands:
-            in_air &= times < reference.swing_t1
-            p_WF[times >= reference.swing_t1, leg] = reference.swing_to
         contact[in_air, leg] = False
-        if in_air.any():
-            position, velocity, _ = spline.sample(times[in_air])
-            p_WF[in_air, leg], v_WF[in_air, leg] = position, velocity
+        landed = in_air & (times >= reference.swing_t1) & reference.swing_lands
+        flying = in_air & ~landed
+        if flying.any():
+            p_WF[flying, leg], v_WF[flying, leg], _ = SwingSpline(reference).sample(times[flying])
+        p_WF[landed, leg] = reference.swing_to
 
     @staticmethod
     def _base(reference: MotionReference, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

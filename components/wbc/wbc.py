@@ -10,14 +10,20 @@ from surefoot.bus.messages import ControlMode, JointCommand, LegStatus, MotionRe
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.components.robot_model import LegKinematics
-from surefoot.components.robot_model.rotation import log_rotation, matrix_of, matrix_of_rpy
+from surefoot.components.robot_model.rotation import log_rotation, matrix_of
+from surefoot.components.wbc.base_target import BaseTarget
+from surefoot.components.wbc.momentum_observer import MomentumObserver
 from surefoot.components.wbc.whole_body_qp import QpFailed, Task, WholeBodyQp
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
 
 
 class Wbc(Component):
-    """Damps, moves the joints between postures, or follows the policy through the whole-body QP."""
+    """Damps, moves the joints between postures, or follows the policy through the whole-body QP.
+
+    It outlives the others: without a fresh policy it holds the base, then lowers it, then damps; without a
+    state machine it does the same and puts a foot that is in the air down. Without an estimate it damps.
+    """
 
     name: ClassVar[str] = "wbc"
     inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "mpc/policy", "fsm/reference")
@@ -33,8 +39,11 @@ class Wbc(Component):
         self._stand_q = np.tile(robot.nominal.stand_q, 4)
         self._friction = np.array(robot.per_joint("friction"))
         self._damping = np.array(robot.per_joint("damping"))
+        self._target = BaseTarget(self._settings, robot.mass)
+        self._observer = MomentumObserver(self._settings, robot.mass)
         self._failures = 0
         self._last_force = np.zeros((4, 3))
+        self._last_t = 0.0
 
     def warm_up(self) -> None:
         """Set the solver up on a standing robot: the first real step only updates it."""
@@ -45,17 +54,22 @@ class Wbc(Component):
         self._qp.solve(Task(np.ones(4, bool), wrench, quarter, np.full(4, 1e-2), np.zeros((4, 3))))
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
-        estimate, reference = inbox.fresh("state/estimate", t), inbox.fresh("fsm/reference", t)
-        if estimate is None or reference is None or reference.mode == ControlMode.DAMP:
-            why = (
-                "" if reference is not None and estimate is not None else "estimate or reference missing or stale"
-            )
-            outbox.publish("joint/command", self._damp(t, why))
+        estimate, reference = inbox.fresh("state/estimate", t), inbox.latest("fsm/reference")
+        lost = "state/estimate" if estimate is None else "fsm/reference" if reference is None else ""
+        if lost or not reference.valid or reference.mode != ControlMode.BALANCE:
+            self._target.reset()
+            self._observer.reset()
+        if lost:
+            outbox.publish("joint/command", self._damp(t, f"{lost} is missing or stale"))
+        elif not reference.valid or reference.mode == ControlMode.DAMP:
+            outbox.publish("joint/command", self._damp(t, ""))
         elif reference.mode == ControlMode.JOINT:
             outbox.publish("joint/command", self._posture(t, reference))
         else:
-            policy = inbox.fresh("mpc/policy", t)
-            outbox.publish("joint/command", self._balance(t, estimate, reference, policy))
+            orphaned = inbox.fresh("fsm/reference", t) is None
+            policy = None if orphaned else inbox.fresh("mpc/policy", t)
+            outbox.publish("joint/command", self._balance(t, estimate, reference, policy, orphaned))
+        self._last_t = t
 
     def _damp(self, t: float, why: str) -> JointCommand:
         return JointCommand(t=t, valid=True, kd=np.full(12, self._settings.damping_kd), solver=why or "ok")
@@ -76,7 +90,12 @@ class Wbc(Component):
         )
 
     def _balance(
-        self, t: float, estimate: StateEstimate, reference: MotionReference, policy: Policy | None
+        self,
+        t: float,
+        estimate: StateEstimate,
+        reference: MotionReference,
+        policy: Policy | None,
+        orphaned: bool,
     ) -> JointCommand:
         settings, qp = self._settings, self._qp
         R = matrix_of(estimate.quat_WB)
@@ -84,18 +103,22 @@ class Wbc(Component):
         q = np.concatenate([estimate.p_WB, [x, y, z, w], estimate.q])
         v = np.concatenate([R.T @ estimate.v_WB_W, estimate.omega_WB_B, estimate.dq])
         qp.update(q, v)
-        stance = np.isin(reference.leg_status, (LegStatus.STANCE, LegStatus.PROBING, LegStatus.COLLAPSING))
-        p_WB, R_des, v_des, omega_W, planned_force = self._desired(t, reference, policy, stance)
+        trusted = np.isin(reference.leg_status, (LegStatus.STANCE, LegStatus.PROBING, LegStatus.COLLAPSING))
+        # Nobody else will tell when a foot that is on its way down has landed.
+        stance = trusted | (orphaned & (t > reference.swing_t1) & estimate.contact)
+        target = self._target.at(t, policy, estimate.p_WB, R, stance)
+        if self._target.lowered:
+            return self._damp(t, "no policy came back: the base has been lowered")
+        self._observe(t, reference)
         # A foot that has just left the ground may still carry in the policy: the wrench it was to give is
         # asked of the others, or the base would tip towards it until the next policy comes.
-        bias_force = planned_force * stance[:, None]
-        linear = qp.mass * (settings.kp * (p_WB - estimate.p_WB) + settings.kd * (v_des - estimate.v_WB_W))
-        turn = log_rotation(R_des @ R.T)
-        spin = settings.kd * (omega_W - R @ estimate.omega_WB_B)
-        wrench = qp.wrench_map @ planned_force.ravel() + np.concatenate(
-            [linear, qp.inertia_W @ (settings.kp * turn + spin)]
-        )
-        crept = reference.p_WF - estimate.p_WF
+        bias_force = target.force_W * stance[:, None]
+        linear = settings.kp * (target.p_WB - estimate.p_WB) + settings.kd * (target.v_WB_W - estimate.v_WB_W)
+        turn = settings.kp * log_rotation(target.R_WB @ R.T)
+        turn += settings.kd * (target.omega_WB_W - R @ estimate.omega_WB_B)
+        impedance = np.concatenate([qp.mass * linear, qp.inertia_W @ turn])
+        wrench = qp.wrench_map @ target.force_W.ravel() + impedance - self._observer.wrench_W
+        crept = (reference.p_WF - estimate.p_WF) * trusted[:, None]
         acceleration = settings.stance_kp * crept - settings.stance_kd * estimate.v_WF
         kp, q_ref, dq_ref = np.zeros(12), estimate.q.copy(), self._still_feet(estimate, R)
         if reference.swing_leg >= 0 and not stance[reference.swing_leg]:
@@ -106,7 +129,8 @@ class Wbc(Component):
         weight = np.where(
             reference.leg_status == LegStatus.PROBING, settings.probe_force_weight, settings.force_weight
         )
-        solver = "ok"
+        held = self._target.held_s
+        solver = "ok" if held == 0.0 else f"no fresh policy: base held for {held:.1f} s"
         try:
             tau, force = qp.solve(Task(stance, wrench, bias_force, weight, acceleration))
             self._failures, self._last_force = 0, force
@@ -132,21 +156,13 @@ class Wbc(Component):
             solver=solver,
         )
 
-    def _desired(self, t: float, reference: MotionReference, policy: Policy | None, stance: np.ndarray):
-        """Base pose and velocity, and forces: the policy's at time t, or the reference's without a policy."""
-        if policy is None:
-            duration = max(reference.base_t1 - reference.base_t0, 1e-6)
-            share = min(max((t - reference.base_t0) / duration, 0.0), 1.0)
-            pose = reference.base_from + share * (reference.base_to - reference.base_from)
-            force = np.zeros((4, 3))
-            force[stance, 2] = self._qp.mass * GRAVITY / max(int(stance.sum()), 1)
-            return pose[:3], matrix_of_rpy(pose[3:]), np.zeros(3), np.zeros(3), force
-        position = (t - policy.t) / policy.dt
-        k = min(max(int(position), 0), len(policy.u) - 1)
-        share = min(max(position - k, 0.0), 1.0)
-        x = policy.x[k] + share * (policy.x[k + 1] - policy.x[k])
-        R = matrix_of_rpy(x[9:12])
-        return x[6:9], R, R @ policy.v[k, :3], R @ policy.v[k, 3:6], policy.u[k, :12].reshape(4, 3)
+    def _observe(self, t: float, reference: MotionReference) -> None:
+        """The momentum observer sees the forces of the last cycle while every foot is trusted."""
+        qp, dt = self._qp, t - self._last_t
+        if (reference.leg_status == LegStatus.STANCE).all() and 0.0 < dt < self._settings.observer_gap_s:
+            self._observer.update(qp.momentum_W, qp.wrench_map @ self._last_force.ravel(), dt)
+        else:
+            self._observer.freeze()
 
     def _still_feet(self, estimate: StateEstimate, R: np.ndarray) -> np.ndarray:
         """Joint velocities (12,) [rad/s] that keep the feet still in the world while the base moves."""

@@ -50,7 +50,8 @@ class WholeBodyQp:
     """One robot's QP, set up once and updated in place.
 
     Attributes:
-        com_W: (3,) centre of mass after `update`; v_com_W its velocity; inertia_W (3, 3) about it.
+        com_W: (3,) centre of mass after `update`; inertia_W (3, 3) about it.
+        momentum_W: (6,) centroidal momentum, linear and angular [N s, N m s].
         J: (4, 3, 18) foot Jacobians in the world.
     """
 
@@ -86,7 +87,7 @@ class WholeBodyQp:
         self._h = pin.nonLinearEffects(model, data, q, v).copy()
         pin.ccrba(model, data, q, v)
         self.com_W = data.com[0].copy()
-        self.v_com_W = data.hg.linear / self.mass
+        self.momentum_W = np.array(data.hg.vector)
         self.inertia_W = np.array(data.Ig.inertia)
         world = pin.LOCAL_WORLD_ALIGNED
         pin.forwardKinematics(model, data, q, v, np.zeros(_NV))

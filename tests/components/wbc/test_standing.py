@@ -60,9 +60,7 @@ def run(seconds, seed=0, script=Script):
 @pytest.mark.parametrize("seed", [0, 1])
 def test_it_stands_still_on_its_own_feet(seed):
     log = run(2.0, seed)
-    assert all(
-        command.solver in ("ok", "estimate or reference missing or stale") for command in log["joint/command"]
-    )
+    assert {command.solver for command in log["joint/command"] if command.t > 0.25} == {"ok"}
     assert all(policy.valid for policy in log["mpc/policy"])
     settled = [truth.p_WB for truth in log["sim/truth"][400:]]
     assert np.ptp(settled, axis=0).max() < 0.02

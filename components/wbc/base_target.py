@@ -1,0 +1,128 @@
+"""Where the base is to be and what the feet are to press: from the policy, or without one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from surefoot.bus.messages import Policy
+from surefoot.components.robot_model.rotation import exp_rotation, log_rotation, matrix_of_rpy
+from surefoot.config.robot import GRAVITY
+from surefoot.config.wbc import Wbc
+
+
+@dataclass(frozen=True)
+class Target:
+    """What the impedance is asked to hold at one instant.
+
+    Attributes:
+        p_WB: (3,) [m]; R_WB: (3, 3).
+        v_WB_W, omega_WB_W: (3,) [m/s, rad/s].
+        force_W: (4, 3) forces of the feet [N].
+    """
+
+    p_WB: np.ndarray
+    R_WB: np.ndarray
+    v_WB_W: np.ndarray
+    omega_WB_W: np.ndarray
+    force_W: np.ndarray
+
+
+class BaseTarget:
+    """The policy's target while the policy is young; without one the base is held where it was, then lowered.
+
+    Every change between the two fades over `blend_s`, so that neither a policy that is lost nor one that
+    returns moves the robot in a jump.
+
+    Attributes:
+        held_s: how long the base has been held without a policy; 0 with one [s].
+    """
+
+    def __init__(self, settings: Wbc, mass: float):
+        self._settings = settings
+        self._weight = mass * GRAVITY
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the last target: the robot does not balance."""
+        self.held_s = 0.0
+        self._last: Target | None = None
+        self._with_policy = False
+        self._lost_t = 0.0
+        self._held: Target | None = None
+        self._fade_t = -np.inf
+        self._gap: tuple[np.ndarray, ...] = ()
+
+    @property
+    def lowered(self) -> bool:
+        """The base has been lowered as far as it goes: nothing is left but to damp."""
+        settings = self._settings
+        return self.held_s > settings.hold_s + settings.lower_m / settings.lower_speed
+
+    def at(
+        self, t: float, policy: Policy | None, p_WB: np.ndarray, R_WB: np.ndarray, stance: np.ndarray
+    ) -> Target:
+        """The target at time t.
+
+        Args:
+            t: now [s].
+            policy: the MPC's, or None where it is missing or stale.
+            p_WB, R_WB: where the base is; held at the start, before there was any target.
+            stance: (4,) feet on the ground.
+        """
+        followed = self._last is not None and self._with_policy
+        if policy is None and (followed or self._held is None):
+            self._lost_t = t
+            self._held = self._last or Target(p_WB.copy(), R_WB.copy(), np.zeros(3), np.zeros(3), np.zeros((4, 3)))
+        source = self._of_policy(t, policy) if policy is not None else self._without(t, stance)
+        self.held_s = 0.0 if policy is not None else t - self._lost_t
+        if self._last is not None and (policy is not None) != self._with_policy:
+            self._fade_t, self._gap = t, _difference(self._last, source)
+        self._with_policy = policy is not None
+        share = min((t - self._fade_t) / self._settings.blend_s, 1.0)
+        if share < 1.0:
+            source = _add(source, self._gap, 1.0 - share * share * (3.0 - 2.0 * share))
+        self._last = source
+        return source
+
+    @staticmethod
+    def _of_policy(t: float, policy: Policy) -> Target:
+        """The policy between its nodes."""
+        position = (t - policy.t) / policy.dt
+        k = min(max(int(position), 0), len(policy.u) - 1)
+        share = min(max(position - k, 0.0), 1.0)
+        x = policy.x[k] + share * (policy.x[k + 1] - policy.x[k])
+        R = matrix_of_rpy(x[9:12])
+        return Target(x[6:9], R, R @ policy.v[k, :3], R @ policy.v[k, 3:6], policy.u[k, :12].reshape(4, 3))
+
+    def _without(self, t: float, stance: np.ndarray) -> Target:
+        """Hold the last pose, then lower it; the feet share the weight."""
+        settings, held = self._settings, self._held
+        sinking = min(max(t - self._lost_t - settings.hold_s, 0.0) * settings.lower_speed, settings.lower_m)
+        down = np.array([0.0, 0.0, sinking])
+        force = np.zeros((4, 3))
+        force[stance, 2] = self._weight / max(int(stance.sum()), 1)
+        speed = -settings.lower_speed if 0.0 < sinking < settings.lower_m else 0.0
+        return Target(held.p_WB - down, held.R_WB, np.array([0.0, 0.0, speed]), np.zeros(3), force)
+
+
+def _difference(a: Target, b: Target) -> tuple[np.ndarray, ...]:
+    return (
+        a.p_WB - b.p_WB,
+        log_rotation(a.R_WB @ b.R_WB.T),
+        a.v_WB_W - b.v_WB_W,
+        a.omega_WB_W - b.omega_WB_W,
+        a.force_W - b.force_W,
+    )
+
+
+def _add(target: Target, gap: tuple[np.ndarray, ...], share: float) -> Target:
+    dp, turn, dv, domega, dforce = gap
+    return Target(
+        target.p_WB + share * dp,
+        exp_rotation(share * turn) @ target.R_WB,
+        target.v_WB_W + share * dv,
+        target.omega_WB_W + share * domega,
+        target.force_W + share * dforce,
+    )
