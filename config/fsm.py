@@ -19,7 +19,7 @@ class Fsm:
     alternative_spacing_m: float = 0.075
     base_height_min_m: float = 0.29  # of the hip axes; the base is lowered as far as this to reach a candidate
     base_height_step_m: float = 0.01
-    leg_length_plan_m: float = 0.44  # planned reach: the base may lag a centimetre or two behind its pose
+    leg_length_plan_m: float = 0.425  # planned reach: eq. (5) keeps the base a few centimetres short of its pose
     leg_length_max_m: float = 0.470  # a foot that looks for ground stops here (Sec. II-D.4)
 
     # Base shift before a swing.

@@ -18,7 +18,7 @@ from surefoot.hw.robot_interface import MotorLaw, Sensors, damping_law
 STEPS_PER_CYCLE = 2
 """Physics steps in one cycle of the interface (500 Hz)."""
 
-_SETTLE_S = 0.5
+_SETTLE_S = 2.0
 _HOLD_KP, _HOLD_KD = 300.0, 8.0  # [N m/rad], [N m s/rad]: stiff enough to sag by millimetres only
 
 

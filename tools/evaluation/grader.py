@@ -21,6 +21,7 @@ from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
 
 FALL_TILT = np.deg2rad(45.0)
 STUCK_S = 5.0  # without contact change or support below the surface
+_CARRIES_N = 10.0  # a foot that bears this much stands
 _FORCES = 6  # of the GRF envelope
 _STOPPED_S = 3.0  # a machine that rests this long waits for a new direction
 _BELOW_M = 0.06  # a foot this far below the surface is in a hole
@@ -121,7 +122,8 @@ class Grader:
             self.failure = self.failure or "fell"
         elif any(part in truth.body_contact for part in ("trunk", "hip", "thigh")):
             self.failure = self.failure or f"contact: {truth.body_contact}"
-        self.passed = self.passed or bool((truth.p_WF[:, 0] > self._end_x).all())
+        beyond = (truth.p_WF[:, 0] > self._end_x) & (truth.force_W[:, 2] > _CARRIES_N)
+        self.passed = self.passed or bool(beyond.all())
         self._watch_holes(truth)
         self._watch_accepted(truth)
         if self._estimate is not None:
