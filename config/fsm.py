@@ -48,8 +48,8 @@ class Fsm:
     fixed_force_n: float = 0.0  # > 0: this normal force instead of the optimised envelope
     dwell_s: float = 0.1  # each force (Sec. II-C)
     blend_s: float = 0.03  # change from one force to the next, inside the dwell
-    settle_s: float = 0.02  # from contact to the first force
-    unload_s: float = 0.05  # after the last force, before the foot hops on ...
+    settle_s: float = 0.12  # from contact to the first force: the base leans towards the foot in this time
+    unload_s: float = 0.08  # after the last force, before the foot hops on ...
     unload_n: float = 12.0  # ... it is brought down to this
     collapse_m: float = 0.03  # displacement that is a collapse (Sec. II-D.5)
     held_share: float = 0.8  # a force counts as held above this share of what was asked

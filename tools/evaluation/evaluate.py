@@ -107,6 +107,12 @@ def _totals(runs: list[dict], whole: list[dict]) -> list[str]:
         "- largest tilt error, degrees: "
         + _list(np.rad2deg([r["estimator"]["tilt_error_max_rad"] for r in whole])),
     ]
+    peaks = _peak_shares(whole)
+    if len(peaks):
+        lines.append(
+            f"- true force over the envelope's peak: median {np.median(peaks):.2f}, least {peaks.min():.2f} "
+            f"of {len(peaks)} probes"
+        )
     if moved:
         lines.append(f"- displacement at detection, cm: median {_cm(moved, 50)}, p95 {_cm(moved, 95)}")
     if unload:
@@ -114,6 +120,15 @@ def _totals(runs: list[dict], whole: list[dict]) -> list[str]:
             f"- unloaded after detection, ms: median {1e3 * np.median(unload):.0f}, max {1e3 * max(unload):.0f}"
         )
     return lines
+
+
+def _peak_shares(runs: list[dict]) -> np.ndarray:
+    """(n,) true over asked normal force at the largest force of each probe that was held to its end."""
+    asked = np.concatenate([run["probe_force"]["asked_n"] for run in runs])
+    true = np.concatenate([run["probe_force"]["true_n"] for run in runs])
+    # Forces come by rising normal force: the next one is lower where a probe ends.
+    last = np.append(np.diff(asked) < 0.0, True)[: len(asked)]
+    return true[last] / np.maximum(asked[last], 1.0)
 
 
 def _list(values, digits: int = 1) -> str:

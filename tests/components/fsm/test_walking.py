@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from surefoot.components.fsm.support_triangle import SupportTriangle
 from surefoot.components.lockstep import Lockstep
 from surefoot.config.deployment import Deployment
 from surefoot.config.fsm import Fsm
@@ -54,6 +55,19 @@ def test_each_foothold_and_four_points_around_it_bear_six_forces(flat):
     asked = np.array([event.asked_n for event in held]).reshape(5, 6)
     assert (np.diff(asked, axis=1) >= 0.0).all() and asked.max() > 90.0
     assert all(event.held_n > 0.8 * event.asked_n - 3.0 for event in held)
+
+
+def test_the_foot_is_unloaded_before_each_hop(flat):
+    hops = [event for event in flat.kinds("transition") if event.state == "PROBE_AROUND" and event.leg == 2]
+    at = {round(truth.t, 3): truth for truth in flat.truth}
+    assert len(hops) == 5
+    assert max(at[round(hop.t, 3)].force_W[2, 2] for hop in hops) < 35.0
+
+
+def test_the_base_stays_inside_the_other_three_feet(flat):
+    triangle = SupportTriangle(flat.truth[-1].p_WF, 0)
+    moved = [truth for truth in flat.truth if flat.kinds("accepted")[0].t + 1.5 < truth.t]
+    assert min(triangle.margin(truth.com_W[:2]) for truth in moved) > 0.015
 
 
 def test_the_foot_advances_and_the_robot_stays_level(flat):
