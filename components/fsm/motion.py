@@ -1,0 +1,191 @@
+"""The motion reference, and the verbs by which stepping and probing change it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from surefoot.bus.messages import ControlMode, LegStatus, MotionReference
+from surefoot.components.fsm.observation import Observation
+from surefoot.config.fsm import Fsm
+
+LIFT_AHEAD_S = 0.10
+"""A lift-off stays this far ahead until the base is ready: the MPC unloads the foot in time."""
+
+LAND_AHEAD_S = 0.03
+"""While contact is awaited, touch-down stays this far ahead."""
+
+_UP = np.array([0.0, 0.0, 1.0])
+_ALWAYS = 1e9  # end of a constraint that lasts until it is taken away [s]
+
+
+class Motion:
+    """What the robot is asked to do now.
+
+    Attributes:
+        reference: the message for the MPC, the whole-body controller and the estimator.
+    """
+
+    def __init__(self, settings: Fsm):
+        self._settings = settings
+        self.reference = MotionReference(mode=ControlMode.BALANCE, normal_W=_UP)
+
+    @property
+    def standing(self) -> np.ndarray:
+        """(4,) feet on trusted ground."""
+        return self.reference.leg_status == LegStatus.STANCE
+
+    @property
+    def in_air(self) -> bool:
+        """A leg swings."""
+        return bool((self.reference.leg_status == LegStatus.SWING).any())
+
+    @property
+    def pressing(self) -> bool:
+        """A foot stands on ground that is not trusted yet."""
+        return bool((self.reference.leg_status == LegStatus.PROBING).any())
+
+    def stand(self, now: Observation, pose: np.ndarray, seconds: float) -> None:
+        """Everything anew: four feet where they are, the base to a pose (6,)."""
+        self.reference = MotionReference(
+            mode=ControlMode.BALANCE,
+            normal_W=now.estimate.normal_W,
+            p_WF=now.estimate.p_WF,
+            leg_status=np.zeros(4, int),
+            base_from=now.pose,
+            base_to=pose,
+            base_t0=now.t,
+            base_t1=now.t + seconds,
+        )
+
+    def plant(self, now: Observation) -> None:
+        """All feet stand where they are; no constraint of probing acts."""
+        self.reference = replace(
+            self.reference,
+            p_WF=now.estimate.p_WF.copy(),
+            leg_status=np.zeros(4, int),
+            swing_leg=-1,
+            support_leg=-1,
+            probe_leg=-1,
+        )
+
+    def on_plane(self, now: Observation) -> None:
+        """Take over where the feet stand and the local normal."""
+        feet, normal = now.estimate.p_WF.copy(), now.estimate.normal_W
+        self.reference = replace(self.reference, p_WF=feet, normal_W=normal, leg_status=np.zeros(4, int))
+
+    def shift_base(self, now: Observation, pose: np.ndarray, duration: float) -> None:
+        """The base moves to a pose (6,) in a straight line."""
+        self.reference = replace(
+            self.reference, base_from=now.pose, base_to=pose, base_t0=now.t, base_t1=now.t + duration
+        )
+
+    def plan_swing(
+        self, leg: int, start: float, to: np.ndarray, now: Observation, duration: float, height: float
+    ) -> None:
+        """A leg is to lift off at a time and land at a point (3,)."""
+        settings = self._settings
+        self.reference = replace(
+            self.reference,
+            swing_leg=leg,
+            swing_t0=start,
+            swing_t1=start + duration,
+            swing_from=now.estimate.p_WF[leg].copy(),
+            swing_to=to,
+            swing_height=height,
+            swing_v_lift=settings.swing_v_lift,
+            swing_v_touch=settings.swing_v_touch,
+            swing_lands=True,
+            **self._support(leg, start),
+        )
+
+    def postpone(self, now: Observation, duration: float) -> None:
+        """The base is not ready: a lift-off that comes too near moves on."""
+        start = now.t + LIFT_AHEAD_S
+        if self.reference.swing_t0 >= start:
+            return
+        leg = self.reference.swing_leg
+        self.reference = replace(
+            self.reference, swing_t0=start, swing_t1=start + duration, **self._support(leg, start)
+        )
+
+    def lift_off(self, now: Observation, duration: float) -> None:
+        """The leg whose swing is planned leaves the ground now."""
+        leg = self.reference.swing_leg
+        feet = now.estimate.p_WF.copy()
+        feet[leg] = self.reference.swing_to
+        status = np.zeros(4, int)
+        status[leg] = LegStatus.SWING
+        self.reference = replace(
+            self.reference,
+            p_WF=feet,
+            leg_status=status,
+            probe_leg=-1,
+            swing_from=now.estimate.p_WF[leg].copy(),
+            swing_t0=now.t,
+            swing_t1=now.t + duration,
+            **self._support(leg, now.t),
+        )
+
+    def descend(self, now: Observation) -> None:
+        """Contact is late: the foot goes on down."""
+        reference = self.reference
+        landing = now.t + LAND_AHEAD_S
+        lower = self._settings.swing_v_touch * (landing - reference.swing_t1)
+        status = reference.leg_status.copy()
+        status[reference.swing_leg] = LegStatus.LANDING
+        self.reference = replace(
+            reference,
+            swing_t1=landing,
+            swing_to=reference.swing_to - lower * reference.normal_W,
+            leg_status=status,
+        )
+
+    def touch_down(self, now: Observation, trusted: bool) -> None:
+        """The swinging foot stands where it is."""
+        status = self.reference.leg_status.copy()
+        status[self.reference.swing_leg] = LegStatus.STANCE if trusted else LegStatus.PROBING
+        feet = now.estimate.p_WF.copy()
+        self.reference = replace(self.reference, p_WF=feet, leg_status=status, swing_leg=-1)
+
+    def press(self, leg: int, start: float, forces_W: np.ndarray) -> None:
+        """Eq. (6): forces (n, 3) for their dwell each, after the first, which is the one that acts now."""
+        settings = self._settings
+        self.reference = replace(
+            self.reference,
+            probe_leg=leg,
+            probe_t0=start,
+            probe_dwell_s=settings.dwell_s,
+            probe_blend_s=settings.blend_s,
+            probe_force_W=forces_W,
+        )
+
+    def raise_leg(self, leg: int, now: Observation, to: np.ndarray) -> None:
+        """LEG_UP: the foot leaves the ground at once and stays in the air at a point (3,)."""
+        status = np.zeros(4, int)
+        status[leg] = LegStatus.SWING
+        self.reference = replace(
+            self.reference,
+            leg_status=status,
+            probe_leg=-1,
+            swing_leg=leg,
+            swing_t0=now.t,
+            swing_t1=now.t + self._settings.leg_up_s,
+            swing_from=now.estimate.p_WF[leg].copy(),
+            swing_to=to,
+            # The foot is falling with the ground: to stop it in one tick would throw the base over.
+            swing_v_from=now.estimate.v_WF[leg].copy(),
+            swing_lands=False,
+        )
+
+    def _support(self, leg: int, start: float) -> dict:
+        """Eq. (5) from lift-off on, until the leg's probing is complete."""
+        on = self._settings.support_polygon and self._settings.probing
+        active = self.in_air or self.pressing
+        return {
+            "support_leg": leg if on else -1,
+            "support_t0": min(start, self.reference.support_t0) if active else start,
+            "support_t1": _ALWAYS,
+            "support_margin_m": self._settings.margin_m,
+        }
