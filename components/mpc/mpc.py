@@ -12,12 +12,13 @@ import pinocchio as pin
 from surefoot.bus.messages import ControlMode, LegStatus, MotionReference, Policy, StateEstimate
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.mpc.motion_sampler import MotionSampler
-from surefoot.components.ocp.centroidal_dynamics import Trajectory, exp_rotations, log_rotations
+from surefoot.components.ocp.centroidal_dynamics import Trajectory
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.ocp.problem import Problem, State, policy_states
 from surefoot.components.ocp.riccati import SolverFailed
 from surefoot.components.robot_model import build_model
 from surefoot.components.robot_model.rotation import exp_rotation, matrix_of
+from surefoot.components.robot_model.rotations import exp_rotations, log_rotations
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
 
