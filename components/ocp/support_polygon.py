@@ -50,11 +50,11 @@ class SupportPolygon:
         reference, N = nodes.reference, nodes.N
         left_out = reference.support_leg[:N]
         active = left_out >= 0
-        feet, node, out = reference.p_WF[:N, :, :2], np.arange(N)[:, None], np.maximum(left_out, 0)
-        corners = feet[node, _CORNERS[out]]
-        edges = feet[node, _NEXT[out]] - corners
-        normals = np.empty_like(edges)
-        normals[..., 0], normals[..., 1] = -edges[..., 1], edges[..., 0]
-        normals /= np.hypot(edges[..., 0], edges[..., 1])[..., None]
-        offset = normals * (nodes.linear.com_W[:, None, :2] - corners)
+        feet, first = reference.p_WF.reshape(-1, 3), 4 * np.arange(N)[:, None]
+        out = np.maximum(left_out, 0)
+        corners = feet.take(first + _CORNERS.take(out, axis=0), axis=0)
+        edges = feet.take(first + _NEXT.take(out, axis=0), axis=0) - corners
+        x, y = edges[..., 0], edges[..., 1]
+        normals = np.stack((-y, x), axis=-1) / np.sqrt(x * x + y * y)[..., None]
+        offset = normals * (nodes.linear.com_W[:, None, :2] - corners[..., :2])
         return active, offset[..., 0] + offset[..., 1] - reference.support_margin_m, normals

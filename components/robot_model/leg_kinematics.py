@@ -160,8 +160,8 @@ class LegKinematics:
         c3 = (length2 - self.l_thigh**2 - self.l_calf**2) / (2 * self.l_thigh * self.l_calf)
         lower, upper = np.cos(self.lower[:, 2]), np.cos(self.upper[:, 2])
         reachable = (c3 <= upper) & (c3 >= lower) & (r2 > 0.0)
-        q[..., 2] = -np.arccos(np.clip(c3, lower, upper))
+        q[..., 2] = -np.arccos(np.minimum(np.maximum(c3, lower), upper))
         knee = np.arctan2(self.l_calf * np.sin(q[..., 2]), self.l_thigh + self.l_calf * np.cos(q[..., 2]))
         q[..., 1] = np.arctan2(-x, r) - knee
         inside = (q >= self.lower) & (q <= self.upper)
-        return np.clip(q, self.lower, self.upper), reachable & inside[..., :2].all(axis=-1)
+        return np.minimum(np.maximum(q, self.lower), self.upper), reachable & inside[..., :2].all(axis=-1)
