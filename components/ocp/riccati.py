@@ -54,7 +54,11 @@ class Riccati:
         ]
         self._stages.reverse()
         self._W = np.zeros((nx + 1, nu + nx + 1)).T
-        self._x = np.ones((qp.N + 1, nx + 1))
+        path = self._path = np.zeros((qp.N + 1, nu + nx + 1))  # of (u, x, 1)
+        path[:, nu + nx] = 1.0
+        self._steps = [
+            (now[:nu], now[nu:], now, after[nu:]) for now, after in zip(path[:-1], path[1:], strict=True)
+        ]
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
         """States (N+1, nx) and inputs (N, nu) of the minimum. The QP's costs `M` are used up.
@@ -63,7 +67,7 @@ class Riccati:
             SolverFailed: a stage's input Hessian is not positive definite, or data is not finite.
         """
         qp, W = self._qp, self._W
-        N, nx, nu = qp.N, qp.nx, qp.nu
+        N, nu, last, dot = qp.N, qp.nu, qp.nu + qp.nx, np.dot
         P, gains = qp.P_end.T, []
         # Of P and S only the lower triangles are read: rounding cannot break a symmetry that is not stored.
         # Arguments by position (side, lower, trans, ..., overwrite): by name they cost a tenth of a product.
@@ -79,18 +83,13 @@ class Riccati:
                 )
             Y = dtrsm(1.0, L, S_xu, 1, 1, 1)  # Y = S_xu L^-T
             P = dgemm(-1.0, Y, Y, 1.0, S_xx, 0, 1)  # P = S_xx - S_xu S_uu^-1 S_ux
-            gains.append(dtrsm(-1.0, L, Y, 1, 1, 0, 0, 1))  # K' = -S_xu S_uu^-1
+            gains.append(dtrsm(-1.0, L, Y, 1, 1, 0, 0, 1).T)  # K' = -S_xu S_uu^-1
         gains.reverse()
-        Kt = np.array(gains)
-        # Closed loop: (x_{k+1}, 1)' = (x_k, 1)' (F_x + F_u K)'.
-        Ft = qp.F.swapaxes(1, 2)
-        closed = Kt @ Ft[:, :nu]
-        closed += Ft[:, nu:]
-        x = self._x
-        x[0, :nx] = qp.x0
-        now = x[0]
-        for step, after in zip(closed, x[1:], strict=True):
-            now = np.dot(now, step, after)
-        if not np.isfinite(x).all():
+        path = self._path
+        path[0, nu:last] = qp.x0
+        for K, F, (u, x, now, after) in zip(gains, qp.F, self._steps, strict=True):
+            dot(K, x, u)
+            dot(F, now, after)
+        if not np.isfinite(path).all():
             raise SolverFailed("riccati: the solution is not finite; the problem's data is not")
-        return x[:, :nx].copy(), (x[:N, None] @ Kt)[:, 0]
+        return path[:, nu:last].copy(), path[:N, :nu].copy()
