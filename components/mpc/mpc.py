@@ -22,7 +22,6 @@ from surefoot.components.robot_model.rotations import exp_rotations, log_rotatio
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
 
-
 _STANDING = (LegStatus.STANCE, LegStatus.PROBING, LegStatus.COLLAPSING)
 
 

@@ -203,7 +203,7 @@ class CentroidalDynamics:
         return linear
 
     def _centroidal(self, p_WB: np.ndarray, R: np.ndarray, q: np.ndarray, v: np.ndarray) -> None:
-        """A_g (N, 6, 18), -d(A_g v)/dq and the centre of mass with its derivative; one Pinocchio pass a node."""
+        """A_g, -d(A_g v)/dq (N, 6, 18) and the centre of mass with its derivative; one Pinocchio pass a node."""
         configuration, A_g = self._configuration, self._A_g
         configuration[:, :3] = p_WB
         configuration[:, 3:7] = quaternions_of(R)

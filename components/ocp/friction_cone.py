@@ -49,6 +49,6 @@ class FrictionCone:
         force, normal = nodes.iterate.force_W, nodes.reference.normal_W
         along = force @ normal
         tangential = force - along[..., None] * normal
-        # |f|^2 = |f_t|^2 + f_n^2 would lose digits where f_t is small.
+        # Not |f|^2 - f_n^2, which loses digits where f_t is small.
         length = np.sqrt((tangential * tangential) @ _ONES3 + self._reg)
         return self._friction * along - length, tangential, length, normal

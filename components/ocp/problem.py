@@ -66,7 +66,7 @@ class Step:
 
     Attributes:
         iterate: the new trajectory.
-        nodes: the old one with its linearisation.
+        nodes: the old one with its linearisation, which holds until the problem's next.
         scale: share of the full Newton step that was taken.
         size: largest state change of the full step.
     """
@@ -108,7 +108,7 @@ class Problem:
         )
 
     def linearise(self, iterate: Trajectory, reference: NodeReference) -> Nodes:
-        """Everything the terms need, about an iterate."""
+        """Everything the terms need, about an iterate; holds until the next call."""
         N, normal = self.N, reference.normal_W
         linear = self.dynamics.linearise(
             iterate,

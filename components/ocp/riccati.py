@@ -8,6 +8,8 @@ With every inequality a relaxed barrier and eq. (3) projected out, this is the w
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from scipy.linalg.blas import dgemm, dsymm, dtrsm
 from scipy.linalg.lapack import dpotrf
@@ -56,9 +58,7 @@ class Riccati:
         self._W = np.zeros((nx + 1, nu + nx + 1)).T
         path = self._path = np.zeros((qp.N + 1, nu + nx + 1))  # of (u, x, 1)
         path[:, nu + nx] = 1.0
-        self._steps = [
-            (now[:nu], now[nu:], now, after[nu:]) for now, after in zip(path[:-1], path[1:], strict=True)
-        ]
+        self._steps = [(now[:nu], now[nu:], now, after[nu:]) for now, after in pairwise(path)]
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
         """States (N+1, nx) and inputs (N, nu) of the minimum. The QP's costs `M` are used up.
