@@ -29,8 +29,8 @@ class MotionSampler:
         times = t + self._offsets
         nodes = len(times)
         contact = np.ones((nodes, 4), bool)
-        p_WF = np.tile(reference.p_WF, (nodes, 1, 1))
-        v_WF = np.zeros((nodes, 4, 3))
+        p_WF, v_WF = np.empty((nodes, 4, 3)), np.zeros((nodes, 4, 3))
+        p_WF[:] = reference.p_WF
         leg = reference.swing_leg
         if leg >= 0:
             self._swing(reference, times, leg, contact, p_WF, v_WF)
@@ -79,7 +79,7 @@ class MotionSampler:
     def _base(reference: MotionReference, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Linear interpolation between two poses, as the paper has it."""
         duration = max(reference.base_t1 - reference.base_t0, 1e-6)
-        share = np.clip((times - reference.base_t0) / duration, 0.0, 1.0)[:, None]
+        share = _unit((times - reference.base_t0) / duration)[:, None]
         pose = reference.base_from + share * (reference.base_to - reference.base_from)
         return pose[:, :3], matrices_of_rpy(pose[:, 3:])
 
@@ -96,10 +96,16 @@ class MotionSampler:
         since = times - reference.probe_t0
         index = np.floor(since / dwell).astype(int)
         active = (index >= 0) & (index < len(forces) - 1) & contact[:, reference.probe_leg]
-        index = np.clip(index, 0, len(forces) - 2)
-        blend = np.clip((since - index * dwell) / max(reference.probe_blend_s, 1e-6), 0.0, 1.0)[:, None]
-        force = forces[index] + blend * (forces[index + 1] - forces[index])
+        index = np.minimum(np.maximum(index, 0), len(forces) - 2)
+        blend = _unit((since - index * dwell) / max(reference.probe_blend_s, 1e-6))[:, None]
+        before = forces[index]
+        force = before + blend * (forces[index + 1] - before)
         return np.where(active, reference.probe_leg, -1), force
+
+
+def _unit(share: np.ndarray) -> np.ndarray:
+    """Clipped to [0, 1]; `np.clip` costs three times as much at this length."""
+    return np.minimum(np.maximum(share, 0.0), 1.0)
 
 
 def matrices_of_rpy(rpy: np.ndarray) -> np.ndarray:

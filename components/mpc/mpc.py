@@ -12,14 +12,29 @@ import pinocchio as pin
 from surefoot.bus.messages import ControlMode, LegStatus, MotionReference, Policy, StateEstimate
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.mpc.motion_sampler import MotionSampler
-from surefoot.components.ocp.centroidal_dynamics import Trajectory, exp_rotations, log_rotations
+from surefoot.components.ocp.centroidal_dynamics import Trajectory
 from surefoot.components.ocp.node_reference import NodeReference
-from surefoot.components.ocp.problem import Problem, State, policy_states
+from surefoot.components.ocp.problem import Problem, State, Step, policy_states
 from surefoot.components.ocp.riccati import SolverFailed
 from surefoot.components.robot_model import build_model
-from surefoot.components.robot_model.rotation import exp_rotation, matrix_of
+from surefoot.components.robot_model.rotation import exp_rotation, matrix_of, skew
+from surefoot.components.robot_model.rotations import exp_rotations, log_rotations
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
+
+_STANDING = (LegStatus.STANCE, LegStatus.PROBING, LegStatus.COLLAPSING)
+
+
+class _Stopwatch:
+    """Wall time at the end of each stage of a tick: a measurement that nothing else in the step reads."""
+
+    def __init__(self) -> None:
+        self.stages: list[str] = []
+        self.times = [perf_counter()]
+
+    def mark(self, stage: str) -> None:
+        self.stages.append(stage)
+        self.times.append(perf_counter())
 
 
 class Mpc(Component):
@@ -63,23 +78,22 @@ class Mpc(Component):
         if estimate is None or reference is None or reference.mode != ControlMode.BALANCE:
             self._iterate = None
             return
-        marks = [perf_counter()]
+        watch = _Stopwatch()
         # The policy is acted on only after the solve and the command's way to the motors: plan from there.
         lead = self.deployment.mpc.lead_s
         begins = t + lead
         nodes = self._sampler.sample(reference, begins)
         measured = self._predict(self.measured(estimate), estimate, self._forces_at(t, reference), lead)
         start = self._warm_start(nodes, begins)
-        marks.append(perf_counter())
+        watch.mark("references")
         try:
-            step = self._problem.iterate(start, nodes, measured)
+            step = self._problem.iterate(start, nodes, measured, watch.mark)
         except SolverFailed as error:
             self._iterate = None
             outbox.publish("mpc/policy", Policy(t=begins, dt=self._dt, solver=str(error)))
             return
-        marks.append(perf_counter())
         self._iterate, self._contact, self._t = step.iterate, nodes.contact, begins
-        self._publish(begins, nodes, step, marks, outbox)
+        self._publish(begins, nodes, step, watch, outbox)
 
     def measured(self, estimate: StateEstimate) -> State:
         """The state x of an estimate: momentum from the base's and the joints' velocities."""
@@ -92,7 +106,7 @@ class Mpc(Component):
 
     def _forces_at(self, t: float, reference: MotionReference) -> np.ndarray:
         """(4, 3) forces of the last trajectory about time t, of the feet that stand now [N]."""
-        stance = np.isin(reference.leg_status, (LegStatus.STANCE, LegStatus.PROBING, LegStatus.COLLAPSING))
+        stance = np.array([status in _STANDING for status in reference.leg_status.tolist()])
         if self._iterate is None:
             force = np.zeros((4, 3))
             force[stance, 2] = self._mass * GRAVITY / max(int(stance.sum()), 1)
@@ -104,8 +118,9 @@ class Mpc(Component):
         """The state after `dt` [s] under the forces that act meanwhile: one explicit step of eq. (1c)."""
         arm = estimate.p_WF - self._data.com[0]
         h = now.h.copy()
-        h[:3] += dt * (force_W.sum(axis=0) / self._mass - [0.0, 0.0, GRAVITY])
-        h[3:] += dt / self._mass * np.cross(arm, force_W).sum(axis=0)
+        h[:3] += dt / self._mass * force_W.sum(axis=0)
+        h[2] -= dt * GRAVITY
+        h[3:] += dt / self._mass * (skew(arm) @ force_W[..., None])[..., 0].sum(axis=0)
         R = now.R_WB @ exp_rotation(dt * estimate.omega_WB_B)
         return State(h, now.p_WB + dt * estimate.v_WB_W, R, now.q + dt * estimate.dq.reshape(4, 3))
 
@@ -115,16 +130,18 @@ class Mpc(Component):
         if old is None:
             return self._problem.cold_start(nodes)
         N = self._problem.N
-        position = np.clip(np.arange(N + 1) + (t - self._t) / self._dt, 0.0, N)
+        position = np.minimum(np.arange(N + 1) + max((t - self._t) / self._dt, 0.0), N)
         low = np.minimum(position.astype(int), N - 1)
         share = position - low
-        held = np.minimum(position.astype(int)[:N], N - 1)
+        held = low[:N]
 
         def between(values: np.ndarray) -> np.ndarray:
+            before = values[low]
             weight = share.reshape(-1, *(1,) * (values.ndim - 1))
-            return values[low] + weight * (values[low + 1] - values[low])
+            return before + weight * (values[low + 1] - before)
 
-        turn = log_rotations(old.R_WB[low].swapaxes(1, 2) @ old.R_WB[low + 1])
+        R_before = old.R_WB[low]
+        turn = log_rotations(R_before.swapaxes(1, 2) @ old.R_WB[low + 1])
         same = (self._contact[held] == nodes.contact[:N])[..., None]
         contact = nodes.contact[:N, :, None]
         cold_velocity = np.where(contact, 0.0, nodes.v_WF[:N])
@@ -132,31 +149,32 @@ class Mpc(Component):
             old,
             h=between(old.h),
             p_WB=between(old.p_WB),
-            R_WB=old.R_WB[low] @ exp_rotations(share[:, None] * turn),
+            R_WB=R_before @ exp_rotations(share[:, None] * turn),
             q=between(old.q),
             force_W=np.where(same, old.force_W[held], contact * nodes.force_W[:N]),
             foot_velocity_W=np.where(same, old.foot_velocity_W[held], cold_velocity),
             v=old.v[held],
         )
 
-    def _publish(self, t: float, nodes: NodeReference, step, marks: list[float], outbox: Outbox) -> None:
+    def _publish(self, t: float, nodes: NodeReference, step: Step, watch: _Stopwatch, outbox: Outbox) -> None:
         iterate, N = step.iterate, self._problem.N
         u = np.concatenate([iterate.force_W.reshape(N, 12), iterate.v[:, 6:]], axis=1)
         # What the old iterate violates: the terms are evaluated where the linearisation was made.
         violations = self._problem.violations(step.nodes)
-        marks.append(perf_counter())
+        x = policy_states(iterate)
+        watch.mark("policy")
         policy = Policy(
             t=t,
             valid=True,
             dt=self._dt,
-            x=policy_states(iterate),
+            x=x,
             u=u,
             v=np.concatenate([iterate.v, iterate.v[-1:]]),
             contact=nodes.contact,
             solver="ok",
             constraint=tuple(violations),
             violation=np.array(list(violations.values())),
-            stage=("references", "sqp", "policy"),
-            stage_ms=1e3 * np.diff(marks),
+            stage=tuple(watch.stages),
+            stage_ms=1e3 * np.diff(watch.times),
         )
         outbox.publish("mpc/policy", policy)

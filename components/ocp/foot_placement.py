@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.ocp.quadratic_model import QuadraticModel
 from surefoot.components.ocp.relaxed_barrier import RelaxedBarrier
-from surefoot.components.ocp.term import Nodes, add_foot_rows
+from surefoot.components.ocp.term import Nodes
 
 
 class FootPlacement:
@@ -20,17 +21,19 @@ class FootPlacement:
         active, h = self._margins(nodes)
         return (active * self._barrier.value(h).sum(axis=2)).sum(axis=1)
 
-    def add(self, nodes: Nodes, H: np.ndarray, g: np.ndarray) -> None:
-        active, h = self._margins(nodes)
-        if not active.any():
+    def add(self, nodes: Nodes, model: QuadraticModel) -> None:
+        if not nodes.reference.region_active.any():
             return
+        active, h = self._margins(nodes)
         A = nodes.reference.region_a
-        slope = active[..., None] * self._barrier.gradient(h)
-        bend = active[..., None] * self._barrier.hessian(h)
-        along = (A.swapaxes(1, 2) @ slope[..., None])[..., 0]
-        add_foot_rows(nodes, along, A.swapaxes(1, 2) @ (bend[..., None] * A), H, g)
+        slope, bend = self._barrier.derivatives(h)
+        active = active[..., None]
+        model.place_slope[:, :4] += (A.swapaxes(1, 2) @ (active * slope)[..., None])[..., 0]
+        model.place_bend[:, :4] += A.swapaxes(1, 2) @ ((active * bend)[..., None] * A)
 
     def violation(self, nodes: Nodes) -> float:
+        if not nodes.reference.region_active.any():
+            return 0.0
         active, h = self._margins(nodes)
         return float(max(0.0, -h[active].min(initial=0.0)))
 

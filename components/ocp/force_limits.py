@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.ocp.quadratic_model import QuadraticModel
 from surefoot.components.ocp.relaxed_barrier import RelaxedBarrier
-from surefoot.components.ocp.term import Nodes, add_force_rows
+from surefoot.components.ocp.term import Nodes
 
 
 class ForceLimits:
@@ -21,16 +22,15 @@ class ForceLimits:
         stance = nodes.reference.contact[: nodes.N]
         return (stance * (self._barrier.value(low) + self._barrier.value(high))).sum(axis=1)
 
-    def add(self, nodes: Nodes, H: np.ndarray, g: np.ndarray) -> None:
-        low, high = self._margins(nodes)
+    def add(self, nodes: Nodes, model: QuadraticModel) -> None:
         stance, normal = nodes.reference.contact[: nodes.N], nodes.reference.normal_W
-        slope = stance * (self._barrier.gradient(low) - self._barrier.gradient(high))
-        bend = stance * (self._barrier.hessian(low) + self._barrier.hessian(high))
-        add_force_rows(nodes, slope[..., None] * normal, bend[..., None, None] * np.outer(normal, normal), H, g)
+        slope, bend = self._barrier.pair(*self._margins(nodes))
+        model.u_slope += (stance * slope)[..., None] * normal
+        model.u_bend += (stance * bend)[..., None, None] * (normal[:, None] * normal)
 
     def violation(self, nodes: Nodes) -> float:
-        low, high = self._margins(nodes)
-        return float(max(0.0, -np.minimum(low, high)[nodes.reference.contact[: nodes.N]].min(initial=0.0)))
+        margin = np.minimum(*self._margins(nodes))
+        return max(0.0, -float((nodes.reference.contact[: nodes.N] * margin).min()))
 
     def _margins(self, nodes: Nodes) -> tuple[np.ndarray, np.ndarray]:
         along = nodes.iterate.force_W @ nodes.reference.normal_W

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.ocp.quadratic_model import QuadraticModel
 from surefoot.components.ocp.relaxed_barrier import RelaxedBarrier
-from surefoot.components.ocp.term import Nodes, add_force_rows
+from surefoot.components.ocp.term import Nodes
+
+_EYE3, _ONES3 = np.eye(3), np.ones(3)
 
 
 class FrictionCone:
@@ -23,26 +26,29 @@ class FrictionCone:
         h, *_ = self._cone(nodes)
         return (nodes.reference.contact[: nodes.N] * self._barrier.value(h)).sum(axis=1)
 
-    def add(self, nodes: Nodes, H: np.ndarray, g: np.ndarray) -> None:
+    def add(self, nodes: Nodes, model: QuadraticModel) -> None:
         h, tangential, length, normal = self._cone(nodes)
         stance = nodes.reference.contact[: nodes.N]
-        slope = self._friction * normal - tangential / length[..., None]
-        first = (stance * self._barrier.gradient(h))[..., None]
-        second = (stance * self._barrier.hessian(h))[..., None, None]
-        # Gauss-Newton, and the convex part of the cone's own curvature.
-        across = np.eye(3) - np.outer(normal, normal)
+        first, second = self._barrier.derivatives(h)
+        first, second = stance * first, stance * second
         unit = tangential / length[..., None]
-        curvature = (across - unit[..., :, None] * unit[..., None, :]) / length[..., None, None]
-        bend = second * (slope[..., :, None] * slope[..., None, :]) - first[..., None] * curvature
-        add_force_rows(nodes, first * slope, bend, H, g)
+        slope = self._friction * normal - unit
+        model.u_slope += first[..., None] * slope
+        # Gauss-Newton, and the convex part of the cone's own curvature, (across - unit unit') / length.
+        across = _EYE3 - normal[:, None] * normal
+        inward = (first / length)[..., None]
+        model.u_bend += (second[..., None] * slope)[..., None] * slope[..., None, :]
+        model.u_bend += (inward * unit)[..., None] * unit[..., None, :]
+        model.u_bend -= inward[..., None] * across
 
     def violation(self, nodes: Nodes) -> float:
         h, *_ = self._cone(nodes)
-        return float(max(0.0, -h[nodes.reference.contact[: nodes.N]].min(initial=0.0)))
+        return max(0.0, -float((nodes.reference.contact[: nodes.N] * h).min()))
 
     def _cone(self, nodes: Nodes):
         force, normal = nodes.iterate.force_W, nodes.reference.normal_W
         along = force @ normal
         tangential = force - along[..., None] * normal
-        length = np.sqrt((tangential**2).sum(axis=-1) + self._reg)
+        # Not |f|^2 - f_n^2, which loses digits where f_t is small.
+        length = np.sqrt((tangential * tangential) @ _ONES3 + self._reg)
         return self._friction * along - length, tangential, length, normal

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.ocp.layout import JOINTS
+from surefoot.components.ocp.quadratic_model import QuadraticModel
 from surefoot.components.ocp.relaxed_barrier import RelaxedBarrier
-from surefoot.components.ocp.term import Nodes, add_joint_velocity_rows
+from surefoot.components.ocp.term import Nodes
 
 
 class JointPositionLimits:
@@ -20,14 +22,13 @@ class JointPositionLimits:
         low, high = self._margins(nodes)
         return (self._barrier.value(low) + self._barrier.value(high)).sum(axis=1)
 
-    def add(self, nodes: Nodes, H: np.ndarray, g: np.ndarray) -> None:
-        low, high = self._margins(nodes)
-        joints = np.arange(24, 36)
-        g[:, joints] += self._barrier.gradient(low) - self._barrier.gradient(high)
-        H[:, joints, joints] += self._barrier.hessian(low) + self._barrier.hessian(high)
+    def add(self, nodes: Nodes, model: QuadraticModel) -> None:
+        slope, bend = self._barrier.pair(*self._margins(nodes))
+        model.x_slope[:-1, JOINTS] += slope
+        model.x_bend[:-1, JOINTS] += bend
 
     def violation(self, nodes: Nodes) -> float:
-        return float(max(0.0, -np.minimum(*self._margins(nodes)).min()))
+        return max(0.0, -float(np.minimum(*self._margins(nodes)).min()))
 
     def _margins(self, nodes: Nodes) -> tuple[np.ndarray, np.ndarray]:
         q = nodes.iterate.q[: nodes.N].reshape(nodes.N, 12)
@@ -46,12 +47,11 @@ class JointVelocityLimits:
         dq = nodes.iterate.v[:, 6:]
         return (self._barrier.value(self._limit - dq) + self._barrier.value(self._limit + dq)).sum(axis=1)
 
-    def add(self, nodes: Nodes, H: np.ndarray, g: np.ndarray) -> None:
+    def add(self, nodes: Nodes, model: QuadraticModel) -> None:
         dq = nodes.iterate.v[:, 6:]
-        below, above = self._limit - dq, self._limit + dq
-        slope = self._barrier.gradient(above) - self._barrier.gradient(below)
-        bend = self._barrier.hessian(above) + self._barrier.hessian(below)
-        add_joint_velocity_rows(nodes, slope, bend, H, g)
+        slope, bend = self._barrier.pair(self._limit + dq, self._limit - dq)
+        model.dq_slope += slope
+        model.dq_bend += bend
 
     def violation(self, nodes: Nodes) -> float:
         return float(max(0.0, np.abs(nodes.iterate.v[:, 6:]).max() - self._limit))

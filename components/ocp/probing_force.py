@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.ocp.quadratic_model import QuadraticModel
 from surefoot.components.ocp.relaxed_barrier import RelaxedBarrier
-from surefoot.components.ocp.term import Nodes, add_force_rows
+from surefoot.components.ocp.term import Nodes
 
 
 class ProbingForce:
@@ -24,15 +25,17 @@ class ProbingForce:
         both = self._barrier.value(error) + self._barrier.value(-error)
         return (active[..., None] * both).sum(axis=(1, 2))
 
-    def add(self, nodes: Nodes, H: np.ndarray, g: np.ndarray) -> None:
-        active, error = self._error(nodes)
-        if not active.any():
+    def add(self, nodes: Nodes, model: QuadraticModel) -> None:
+        if not (nodes.reference.probe_leg >= 0).any():
             return
-        slope = active[..., None] * (self._barrier.gradient(error) - self._barrier.gradient(-error))
-        bend = active[..., None] * (self._barrier.hessian(error) + self._barrier.hessian(-error))
-        add_force_rows(nodes, slope, bend[..., None] * np.eye(3), H, g)
+        active, error = self._error(nodes)
+        slope, bend = self._barrier.pair(error, -error)
+        model.u_slope += active[..., None] * slope
+        model.u_bend += (active[..., None] * bend)[..., None] * np.eye(3)
 
     def violation(self, nodes: Nodes) -> float:
+        if not (nodes.reference.probe_leg >= 0).any():
+            return 0.0
         active, error = self._error(nodes)
         return float(np.abs(error * active[..., None]).max(initial=0.0))
 

@@ -2,35 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from surefoot.components.ocp.centroidal_dynamics import (
-    JOINTS,
-    MOMENTUM,
-    NU,
-    NV,
-    NX,
-    POSITION,
-    ROTATION,
-    CentroidalDynamics,
-    Trajectory,
-    exp_rotations,
-    log_rotations,
-)
+from surefoot.components.ocp.centroidal_dynamics import CentroidalDynamics, Trajectory
 from surefoot.components.ocp.foot_placement import FootPlacement
 from surefoot.components.ocp.force_limits import ForceLimits
 from surefoot.components.ocp.friction_cone import FrictionCone
 from surefoot.components.ocp.joint_limits import JointPositionLimits, JointVelocityLimits
+from surefoot.components.ocp.layout import JOINTS, MOMENTUM, NU, NV, NX, POSITION, ROTATION
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.ocp.probing_force import ProbingForce
+from surefoot.components.ocp.quadratic_model import QuadraticModel
 from surefoot.components.ocp.relaxed_barrier import RelaxedBarrier
 from surefoot.components.ocp.riccati import Riccati, SolverFailed, StageQP
 from surefoot.components.ocp.support_polygon import SupportPolygon
 from surefoot.components.ocp.term import Nodes, Term
 from surefoot.components.ocp.tracking import Tracking
 from surefoot.components.robot_model import LegKinematics
+from surefoot.components.robot_model.rotations import exp_rotations, log_rotations
 from surefoot.config.ocp import Ocp
 from surefoot.config.robot import Robot
 
@@ -74,7 +66,7 @@ class Step:
 
     Attributes:
         iterate: the new trajectory.
-        nodes: the old one with its linearisation.
+        nodes: the old one with its linearisation, which holds until the problem's next.
         scale: share of the full Newton step that was taken.
         size: largest state change of the full step.
     """
@@ -85,16 +77,21 @@ class Step:
     size: float
 
 
+def _ignore(stage: str) -> None:
+    """Nobody measures."""
+
+
 class Problem:
     """Eqs. (1)-(6) over N intervals for one robot."""
 
     def __init__(self, settings: Ocp, robot: Robot, N: int):
         self.N = N
         self.settings = settings
-        self.dynamics = CentroidalDynamics(robot)
+        self.dynamics = CentroidalDynamics(robot, N)
         self.tracking, self.constraints = compose(settings, robot)
-        self._riccati = Riccati(N, NX, NU)
-        self._H, self._g = np.zeros((N, NU + NX, NU + NX)), np.zeros((N, NU + NX))
+        self._qp = StageQP(N, NX, NU, self.dynamics.F)
+        self._model = QuadraticModel(self._qp)
+        self._riccati = Riccati(self._qp)
 
     def cold_start(self, reference: NodeReference) -> Trajectory:
         """The reference as the first iterate; its lifted velocities settle in the first iteration."""
@@ -111,7 +108,7 @@ class Problem:
         )
 
     def linearise(self, iterate: Trajectory, reference: NodeReference) -> Nodes:
-        """Everything the terms need, about an iterate."""
+        """Everything the terms need, about an iterate; holds until the next call."""
         N, normal = self.N, reference.normal_W
         linear = self.dynamics.linearise(
             iterate,
@@ -126,17 +123,19 @@ class Problem:
 
     def quadratic(self, nodes: Nodes, x0: np.ndarray) -> StageQP:
         """The QP of an SQP iteration; `x0` (24,) is the measured state's deviation from the iterate."""
-        H, g = self._H, self._g
-        H[:], g[:] = 0.0, 0.0
-        self.tracking.add(nodes, H, g)
+        model, qp = self._model, self._qp
+        model.clear()
+        self.tracking.add(nodes, model)
         for constraint in self.constraints:
-            constraint.add(nodes, H, g)
-        Q_end, q_end = self.tracking.terminal(nodes)
-        linear = nodes.linear
-        return StageQP(linear.A, linear.B, linear.c, H, g, Q_end, q_end, x0)
+            constraint.add(nodes, model)
+        model.write(nodes.linear)
+        qp.x0[:] = x0
+        return qp
 
-    def iterate(self, iterate: Trajectory, reference: NodeReference, measured: State) -> Step:
-        """One SQP iteration from `iterate`.
+    def iterate(
+        self, iterate: Trajectory, reference: NodeReference, measured: State, mark: Callable[[str], None] = _ignore
+    ) -> Step:
+        """One SQP iteration from `iterate`; `mark` is told the name of each stage as it ends.
 
         Raises:
             SolverFailed: the QP has no solution; the iterate is left as it was.
@@ -147,8 +146,14 @@ class Problem:
         x0[POSITION] = measured.p_WB - iterate.p_WB[0]
         x0[ROTATION] = log_rotations((iterate.R_WB[0].T @ measured.R_WB)[None])[0]
         x0[JOINTS] = (measured.q - iterate.q[0]).ravel()
-        dx, du = self._riccati.solve(self.quadratic(nodes, x0))
-        return self._take(nodes, dx, du)
+        mark("linearise")
+        self.quadratic(nodes, x0)
+        mark("quadratic")
+        dx, du = self._riccati.solve()
+        mark("riccati")
+        step = self._take(nodes, dx, du)
+        mark("step")
+        return step
 
     def converge(
         self, reference: NodeReference, measured: State, iterations: int, tolerance: float

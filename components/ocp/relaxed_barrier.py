@@ -30,11 +30,21 @@ class RelaxedBarrier:
         relaxed = 0.5 * (z * z - 1.0) - log(self.delta)
         return self.mu * np.where(h > self.delta, inside, relaxed)
 
+    def derivatives(self, h: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """First and second derivative with respect to h; the second is positive everywhere."""
+        inverse = 1.0 / np.maximum(h, self.delta)
+        outside = np.minimum(h - self.delta, 0.0)
+        return (self.mu / self.delta**2) * outside - self.mu * inverse, self.mu * inverse * inverse
+
     def gradient(self, h: np.ndarray) -> np.ndarray:
-        """Derivative with respect to h."""
-        relaxed = (h - 2.0 * self.delta) / self.delta**2
-        return self.mu * np.where(h > self.delta, -1.0 / np.maximum(h, self.delta), relaxed)
+        """First derivative with respect to h."""
+        return self.derivatives(h)[0]
 
     def hessian(self, h: np.ndarray) -> np.ndarray:
-        """Second derivative with respect to h, positive everywhere."""
-        return self.mu / np.maximum(h, self.delta) ** 2
+        """Second derivative with respect to h."""
+        return self.derivatives(h)[1]
+
+    def pair(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of the penalty of a quantity with margins `low` above one limit, `high` below another."""
+        slope, bend = self.derivatives(np.array((low, high)))
+        return slope[0] - slope[1], bend[0] + bend[1]

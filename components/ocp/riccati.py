@@ -8,91 +8,88 @@ With every inequality a relaxed barrier and eq. (3) projected out, this is the w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from scipy.linalg.lapack import dposv
+from scipy.linalg.blas import dgemm, dsymm, dtrsm
+from scipy.linalg.lapack import dpotrf
 
 
 class SolverFailed(RuntimeError):
     """A solver did not give a step; says which, at which stage and why."""
 
 
-@dataclass
 class StageQP:
-    """The QP's data; inputs come first in H and g.
+    """The QP's data in the columns (u, x, 1), so that gradients ride along with Hessians; allocated once.
 
     Attributes:
-        A: (N, nx, nx), B: (N, nx, nu), c: (N, nx) dynamics.
-        H: (N, nu+nx, nu+nx) positive semidefinite, positive definite in u; g: (N, nu+nx).
-        Q_end: (nx, nx), q_end: (nx,) terminal cost.
+        F: (N, nx+1, nu+nx+1) dynamics, (x, 1) of the next stage.
+        M: (N, nu+nx+1, nu+nx+1) costs, of which the upper triangles count.
+        P_end: (nx+1, nx+1) terminal cost, of which the upper triangle counts.
         x0: (nx,) first state.
+        A, B, c, H, g, Q_end, q_end: the parts of these as named above, views. H is positive semidefinite, and
+            positive definite in u.
     """
 
-    A: np.ndarray
-    B: np.ndarray
-    c: np.ndarray
-    H: np.ndarray
-    g: np.ndarray
-    Q_end: np.ndarray
-    q_end: np.ndarray
-    x0: np.ndarray
+    def __init__(self, N: int, nx: int, nu: int, F: np.ndarray | None = None):
+        """Zero costs; `F` shares dynamics that are written elsewhere."""
+        n, last = nu + nx + 1, nu + nx
+        self.N, self.nx, self.nu = N, nx, nu
+        self.F = np.zeros((N, nx + 1, n)) if F is None else F
+        self.F[:, nx, last] = 1.0
+        self.M, self.P_end, self.x0 = np.zeros((N, n, n)), np.zeros((nx + 1, nx + 1)), np.zeros(nx)
+        self.B, self.A, self.c = self.F[:, :nx, :nu], self.F[:, :nx, nu:last], self.F[:, :nx, last]
+        self.H, self.g = self.M[:, :last, :last], self.M[:, :last, last]
+        self.Q_end, self.q_end = self.P_end[:nx, :nx], self.P_end[:nx, nx]
 
 
 class Riccati:
-    """Solves a `StageQP` of fixed size; its arrays are allocated once.
+    """Solves one `StageQP`, whose data may change between calls."""
 
-    In the backward sweep the state is (x, 1), so that gradients ride along with Hessians, and the order is
-    (u, x, 1): three products and one Cholesky solve a stage.
+    def __init__(self, qp: StageQP):
+        self._qp = qp
+        nx, nu = qp.nx, qp.nu
+        # Transposed, C-ordered arrays are the Fortran-ordered ones that BLAS takes without a copy; the views
+        # are made once, as a slice costs as much as a small product.
+        self._stages = [
+            (F.T, S.T, S.T[:nu, :nu], S.T[nu:, :nu], S.T[nu:, nu:]) for F, S in zip(qp.F, qp.M, strict=True)
+        ]
+        self._stages.reverse()
+        self._W = np.zeros((nx + 1, nu + nx + 1)).T
+        path = self._path = np.zeros((qp.N + 1, nu + nx + 1))  # of (u, x, 1)
+        path[:, nu + nx] = 1.0
+        self._steps = [(now[:nu], now[nu:], now, after[nu:]) for now, after in pairwise(path)]
 
-    Attributes:
-        K: (N, nu, nx+1) feedback and feed-forward, u = K (x, 1).
-    """
-
-    def __init__(self, N: int, nx: int, nu: int):
-        self.N, self.nx, self.nu = N, nx, nu
-        n = nx + 1
-        self._F = np.zeros((N, n, nu + n))
-        self._F[:, nx, nu + nx] = 1.0
-        self._M = np.zeros((N, nu + n, nu + n))
-        self.K = np.zeros((N, nu, n))
-
-    def solve(self, qp: StageQP) -> tuple[np.ndarray, np.ndarray]:
-        """States (N+1, nx) and inputs (N, nu) of the minimum.
+    def solve(self) -> tuple[np.ndarray, np.ndarray]:
+        """States (N+1, nx) and inputs (N, nu) of the minimum. The QP's costs `M` are used up.
 
         Raises:
             SolverFailed: a stage's input Hessian is not positive definite, or data is not finite.
         """
-        N, nx, nu = self.N, self.nx, self.nu
-        F, M = self._F, self._M
-        F[:, :nx, :nu] = qp.B
-        F[:, :nx, nu : nu + nx] = qp.A
-        F[:, :nx, nu + nx] = qp.c
-        last = nu + nx
-        M[:, :last, :last] = qp.H
-        M[:, :last, last] = qp.g
-        M[:, last, :last] = qp.g
-        P = np.zeros((nx + 1, nx + 1))
-        P[:nx, :nx], P[:nx, nx], P[nx, :nx] = qp.Q_end, qp.q_end, qp.q_end
-        K = self.K
-        for k in range(N - 1, -1, -1):
-            Fk = F[k]
-            S = M[k] + Fk.T @ (P @ Fk)
-            _, gain, info = dposv(S[:nu, :nu], S[:nu, nu:], lower=1)
+        qp, W = self._qp, self._W
+        N, nu, last, dot = qp.N, qp.nu, qp.nu + qp.nx, np.dot
+        P, gains = qp.P_end.T, []
+        # Of P and S only the lower triangles are read: rounding cannot break a symmetry that is not stored.
+        # Arguments by position (side, lower, trans, ..., overwrite): by name they cost a tenth of a product.
+        for Ft, S, S_uu, S_xu, S_xx in self._stages:
+            dsymm(1.0, P, Ft, 0.0, W, 1, 1, 1)  # W' = P F
+            dgemm(1.0, Ft, W, 1.0, S, 0, 1, 1)  # S = M + F' P F, in place
+            L, info = dpotrf(S_uu, 1)
             if info != 0:
+                k = N - 1 - len(gains)
                 raise SolverFailed(
                     f"riccati: the input Hessian of stage {k} of {N} is not positive definite "
                     f"(leading minor {info}); a cost lacks weight on that input, or the data is not finite"
                 )
-            K[k] = -gain
-            P = S[nu:, nu:] - S[nu:, :nu] @ gain
-            # Rounding breaks the symmetry, and over 80 stages grows into NaN if it is left.
-            P = 0.5 * (P + P.T)
-        x, u = np.empty((N + 1, nx)), np.empty((N, nu))
-        x[0] = qp.x0
-        for k in range(N):
-            u[k] = K[k, :, :nx] @ x[k] + K[k, :, nx]
-            x[k + 1] = qp.A[k] @ x[k] + qp.B[k] @ u[k] + qp.c[k]
-        if not np.isfinite(x).all():
+            Y = dtrsm(1.0, L, S_xu, 1, 1, 1)  # Y = S_xu L^-T
+            P = dgemm(-1.0, Y, Y, 1.0, S_xx, 0, 1)  # P = S_xx - S_xu S_uu^-1 S_ux
+            gains.append(dtrsm(-1.0, L, Y, 1, 1, 0, 0, 1).T)  # K' = -S_xu S_uu^-1
+        gains.reverse()
+        path = self._path
+        path[0, nu:last] = qp.x0
+        for K, F, (u, x, now, after) in zip(gains, qp.F, self._steps, strict=True):
+            dot(K, x, u)
+            dot(F, now, after)
+        if not np.isfinite(path).all():
             raise SolverFailed("riccati: the solution is not finite; the problem's data is not")
-        return x, u
+        return path[:, nu:last].copy(), path[:N, :nu].copy()

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.ocp.quadratic_model import QuadraticModel
 from surefoot.components.ocp.relaxed_barrier import RelaxedBarrier
-from surefoot.components.ocp.term import Nodes, X
+from surefoot.components.ocp.term import Nodes
 
 # Neighbours around the robot, so that three of them in this order enclose the polygon anticlockwise.
 _ANTICLOCKWISE = (0, 2, 3, 1)
+_CORNERS = np.array([[leg for leg in _ANTICLOCKWISE if leg != out] for out in range(4)])
+_NEXT = np.roll(_CORNERS, -1, axis=1)
 
 
 class SupportPolygon:
@@ -27,18 +30,18 @@ class SupportPolygon:
         active, h, _ = self._margins(nodes)
         return active * self._barrier.value(h).sum(axis=1)
 
-    def add(self, nodes: Nodes, H: np.ndarray, g: np.ndarray) -> None:
-        active, h, normals = self._margins(nodes)
-        if not active.any():
+    def add(self, nodes: Nodes, model: QuadraticModel) -> None:
+        if not (nodes.reference.support_leg >= 0).any():
             return
-        rows = normals @ nodes.linear.com_x[:, :2]
-        transposed = rows.swapaxes(1, 2)
-        slope = active[:, None] * self._barrier.gradient(h)
-        bend = active[:, None] * self._barrier.hessian(h)
-        g[:, X] += (transposed @ slope[..., None])[..., 0]
-        H[:, X, X] += transposed @ (bend[..., None] * rows)
+        active, h, normals = self._margins(nodes)
+        slope, bend = self._barrier.derivatives(h)
+        inward = (active[:, None, None] * normals).swapaxes(1, 2)
+        model.place_slope[:, 4, :2] += (inward @ slope[..., None])[..., 0]
+        model.place_bend[:, 4, :2, :2] += inward @ (bend[..., None] * normals)
 
     def violation(self, nodes: Nodes) -> float:
+        if not (nodes.reference.support_leg >= 0).any():
+            return 0.0
         active, h, _ = self._margins(nodes)
         return float(max(0.0, -h[active].min(initial=0.0)))
 
@@ -47,11 +50,11 @@ class SupportPolygon:
         reference, N = nodes.reference, nodes.N
         left_out = reference.support_leg[:N]
         active = left_out >= 0
-        order = np.array([[leg for leg in _ANTICLOCKWISE if leg != out] for out in range(4)])
-        corners = reference.p_WF[:N, :, :2][np.arange(N)[:, None], order[np.maximum(left_out, 0)]]
-        edges = np.roll(corners, -1, axis=1) - corners
-        normals = np.empty_like(edges)
-        normals[..., 0], normals[..., 1] = -edges[..., 1], edges[..., 0]
-        normals /= np.sqrt((normals**2).sum(axis=-1, keepdims=True))
-        offset = nodes.linear.com_W[:, None, :2] - corners
-        return active, (normals * offset).sum(axis=-1) - reference.support_margin_m, normals
+        feet, first = reference.p_WF.reshape(-1, 3), 4 * np.arange(N)[:, None]
+        out = np.maximum(left_out, 0)
+        corners = feet.take(first + _CORNERS.take(out, axis=0), axis=0)
+        edges = feet.take(first + _NEXT.take(out, axis=0), axis=0) - corners
+        x, y = edges[..., 0], edges[..., 1]
+        normals = np.stack((-y, x), axis=-1) / np.sqrt(x * x + y * y)[..., None]
+        offset = normals * (nodes.linear.com_W[:, None, :2] - corners[..., :2])
+        return active, offset[..., 0] + offset[..., 1] - reference.support_margin_m, normals

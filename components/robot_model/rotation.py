@@ -7,12 +7,16 @@ from math import asin, atan2, copysign, cos, sin, sqrt
 import numpy as np
 
 
-def skew(a: np.ndarray) -> np.ndarray:
-    """(..., 3, 3) matrix with skew(a) b = a x b."""
-    result = np.zeros((*a.shape, 3))
-    result[..., 0, 1], result[..., 0, 2], result[..., 1, 2] = -a[..., 2], a[..., 1], -a[..., 0]
-    result[..., 1, 0], result[..., 2, 0], result[..., 2, 1] = a[..., 2], -a[..., 1], a[..., 0]
-    return result
+def skew(a: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
+    """(..., 3, 3) matrix with skew(a) b = a x b; in `out`, whose diagonal is zero, if that is given."""
+    if out is None:
+        out = np.zeros((*a.shape, 3))
+    x, y, z = a[..., 0], a[..., 1], a[..., 2]
+    out[..., 2, 1], out[..., 0, 2], out[..., 1, 0] = x, y, z
+    np.negative(x, out=out[..., 1, 2])
+    np.negative(y, out=out[..., 2, 0])
+    np.negative(z, out=out[..., 0, 1])
+    return out
 
 
 def exp_rotation(phi: np.ndarray) -> np.ndarray:

@@ -90,6 +90,12 @@ def test_a_standing_robot_gets_a_policy_that_holds_it():
     assert dict(zip(policy.constraint, policy.violation, strict=True))["friction_cone"] == 0.0
 
 
+def test_a_policy_tells_how_long_each_stage_of_its_tick_took():
+    policy = Loop().tick(0.0, STAND)
+    assert policy.stage == ("references", "linearise", "quadratic", "riccati", "step", "policy")
+    assert len(policy.stage_ms) == 6 and np.all(policy.stage_ms > 0.0)
+
+
 def test_a_swing_leg_is_unloaded_and_follows_its_spline():
     loop = Loop()
     for tick in range(25):

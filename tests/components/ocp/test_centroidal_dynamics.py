@@ -4,17 +4,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.components.ocp.centroidal_dynamics import (
-    CentroidalDynamics,
-    Trajectory,
-    exp_rotations,
-    log_rotations,
-)
+from surefoot.components.ocp.centroidal_dynamics import CentroidalDynamics, Trajectory
 from surefoot.components.robot_model import build_model, foot_frame_ids
 from surefoot.config.robot import GRAVITY, load_robot
 
 ROBOT = load_robot("aliengo")
-DYNAMICS = CentroidalDynamics(ROBOT)
+DYNAMICS = CentroidalDynamics(ROBOT, 1)
 MODEL = build_model(ROBOT)
 DT = 0.015
 NORMAL = np.array([0.1, -0.05, 1.0]) / np.sqrt(1.0125)
@@ -127,8 +122,38 @@ def test_input_derivatives(seed):
     np.testing.assert_allclose(linear.B[0], B, atol=2e-5)
 
 
-def test_rotations_are_pinocchios():
-    rng = np.random.default_rng(0)
-    phi = rng.normal(size=(30, 3))
-    np.testing.assert_allclose(exp_rotations(phi), [pin.exp3(p) for p in phi], atol=1e-12)
-    np.testing.assert_allclose(log_rotations(exp_rotations(phi)), phi, atol=1e-9)
+@pytest.mark.parametrize("seed", range(4))
+def test_places_are_pinocchios_and_their_derivatives_those_of_the_places(seed):
+    state, u, contact, rate, reference = random_case(seed)
+    linear, _, _ = linearised(state, u, contact, rate, reference)
+
+    def places(state):
+        _, feet, com = exact_velocity(state, np.zeros((4, 3)))
+        return np.vstack([feet, com])
+
+    np.testing.assert_allclose(np.vstack([linear.p_WF[0], linear.com_W]), places(state), atol=1e-12)
+    step = 1e-6
+    for i in range(18):
+        delta = np.r_[np.zeros(6), step * np.eye(18)[i]]
+        slope = (places(moved(state, delta)) - places(moved(state, -delta))) / (2 * step)
+        np.testing.assert_allclose(linear.place_x[0, ..., i], slope, atol=1e-8)
+
+
+def test_a_linearisation_does_not_depend_on_those_before_it():
+    robots = CentroidalDynamics(ROBOT, 1), CentroidalDynamics(ROBOT, 1)
+    results = []
+    for dynamics, seeds in zip(robots, ((0, 1, 2), (2,)), strict=True):
+        for seed in seeds:
+            state, u, contact, rate, reference = random_case(seed)
+            after, v = exact_step(state, u, contact, rate, reference)
+            iterate = Trajectory(
+                *(np.array([a, b]) for a, b in zip(state[:3], after[:3], strict=True)),
+                q=np.array([state[3], after[3]]).reshape(2, 4, 3),
+                force_W=(u * contact[:, None])[None],
+                foot_velocity_W=(u * ~contact[:, None])[None],
+                v=v[None],
+            )
+            linear = dynamics.linearise(iterate, contact[None], DT, NORMAL, rate[None], GAIN, reference[None])
+        results.append(linear)
+    np.testing.assert_array_equal(results[0].F, results[1].F)
+    np.testing.assert_array_equal(results[0].V, results[1].V)

@@ -12,16 +12,16 @@ def problem(N=6, nx=5, nu=3, seed=0):
     rng = np.random.default_rng(seed)
     root = rng.normal(size=(N, nu + nx, nu + nx))
     end = rng.normal(size=(nx, nx))
-    return StageQP(
-        A=np.eye(nx) + 0.3 * rng.normal(size=(N, nx, nx)),
-        B=rng.normal(size=(N, nx, nu)),
-        c=rng.normal(size=(N, nx)),
-        H=root @ root.transpose(0, 2, 1) + 0.1 * np.eye(nu + nx),
-        g=rng.normal(size=(N, nu + nx)),
-        Q_end=end @ end.T,
-        q_end=rng.normal(size=nx),
-        x0=rng.normal(size=nx),
-    )
+    qp = StageQP(N, nx, nu)
+    qp.A[:] = np.eye(nx) + 0.3 * rng.normal(size=(N, nx, nx))
+    qp.B[:] = rng.normal(size=(N, nx, nu))
+    qp.c[:] = rng.normal(size=(N, nx))
+    qp.H[:] = root @ root.transpose(0, 2, 1) + 0.1 * np.eye(nu + nx)
+    qp.g[:] = rng.normal(size=(N, nu + nx))
+    qp.Q_end[:] = end @ end.T
+    qp.q_end[:] = rng.normal(size=nx)
+    qp.x0[:] = rng.normal(size=nx)
+    return qp
 
 
 def dense(qp):
@@ -58,7 +58,7 @@ def test_equals_a_dense_kkt_solve(seed):
     m = len(b)
     kkt = np.block([[P, A.T], [A, np.zeros((m, m))]])
     x, u = unpack(np.linalg.solve(kkt, np.concatenate([-q, b]))[: len(q)], qp)
-    found_x, found_u = Riccati(*qp.B.shape).solve(qp)
+    found_x, found_u = Riccati(qp).solve()
     np.testing.assert_allclose(found_x, x, atol=1e-8)
     np.testing.assert_allclose(found_u, u, atol=1e-8)
 
@@ -73,7 +73,7 @@ def test_equals_piqp_multistage():
     solver.setup(sparse.csc_matrix(P), q, sparse.csc_matrix(A), b)
     assert solver.solve() == piqp.PIQP_SOLVED
     x, u = unpack(solver.result.x, qp)
-    found_x, found_u = Riccati(*qp.B.shape).solve(qp)
+    found_x, found_u = Riccati(qp).solve()
     np.testing.assert_allclose(found_x, x, atol=1e-5)
     np.testing.assert_allclose(found_u, u, atol=1e-5)
 
@@ -84,8 +84,8 @@ def test_a_failure_is_named_with_its_stage():
     qp.H[4:, 3:, 3:] *= 1e-6
     qp.Q_end[:] = 0.0
     with pytest.raises(SolverFailed, match=r"riccati: .* of stage \d of 6"):
-        Riccati(*qp.B.shape).solve(qp)
+        Riccati(qp).solve()
     qp = problem()
     qp.c[2, 0] = np.nan
     with pytest.raises(SolverFailed, match="riccati"):
-        Riccati(*qp.B.shape).solve(qp)
+        Riccati(qp).solve()

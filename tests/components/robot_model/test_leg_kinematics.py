@@ -38,6 +38,23 @@ def test_position_and_jacobian_are_pinocchios(legs):
             )
 
 
+def test_motion_is_position_and_jacobian_and_their_derivatives(legs):
+    kinematics, _ = legs
+    q = postures(kinematics, 20)
+    dq = np.random.default_rng(1).normal(size=q.shape)
+    motion = kinematics.motion(q, dq)
+    np.testing.assert_allclose(motion.position, kinematics.position(q), atol=1e-14)
+    np.testing.assert_allclose(motion.jacobian, kinematics.jacobian(q), atol=1e-14)
+    np.testing.assert_allclose(
+        motion.inverse @ motion.jacobian, np.broadcast_to(np.eye(3), (20, 4, 3, 3)), atol=1e-10
+    )
+    step = 1e-6
+    for i in range(3):
+        delta = step * np.eye(3)[i]
+        up, down = kinematics.jacobian(q + delta) @ dq[..., None], kinematics.jacobian(q - delta) @ dq[..., None]
+        np.testing.assert_allclose(motion.velocity_q[..., i], ((up - down) / (2 * step))[..., 0], atol=1e-8)
+
+
 def test_inverse_returns_the_posture(legs):
     kinematics, _ = legs
     q = postures(kinematics, 50)

@@ -1,0 +1,29 @@
+"""Batched rotations are Pinocchio's, down to no rotation at all."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from surefoot.components.robot_model.rotations import (
+    exp_rotations,
+    exp_rotations_and_jacobians,
+    log_rotations,
+    quaternions_of,
+)
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-3, 1e-9, 1e-13, 0.0])
+def test_exponential_and_logarithm(scale):
+    phi = scale * np.random.default_rng(0).normal(size=(30, 3))
+    R = exp_rotations(phi)
+    np.testing.assert_allclose(R, [pin.exp3(p) for p in phi], atol=1e-12)
+    np.testing.assert_allclose(log_rotations(R), phi, atol=1e-9 * scale + 1e-16)
+    quat = np.array([pin.Quaternion(r).coeffs() for r in R])
+    np.testing.assert_allclose(quaternions_of(R), np.sign(quat[:, 3:]) * quat, atol=1e-12)
+
+
+def test_right_jacobians_are_good_to_the_order_of_their_series():
+    phi = 0.08 * np.random.default_rng(0).normal(size=(30, 3))
+    R, jacobian = exp_rotations_and_jacobians(phi)
+    np.testing.assert_array_equal(R, exp_rotations(phi))
+    np.testing.assert_allclose(jacobian, [pin.Jexp3(p) for p in phi], atol=1e-6)

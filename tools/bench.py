@@ -1,0 +1,165 @@
+"""How fast the stack is on this machine, beside what is asked of it.
+
+Nothing of it is a timed test: no test and no exit code depends on a figure, since they tell as much of what
+else the machine does as of the code. Compare figures of one machine, or after division by the calibration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from time import perf_counter
+
+import numpy as np
+
+from surefoot.bus.message import Message
+from surefoot.components.component import Inbox, Outbox
+from surefoot.components.lockstep import Lockstep
+from surefoot.components.trajopt.trajopt import Trajopt
+from surefoot.config.deployment import Deployment
+
+WARM_UP_S = 4.0
+"""Simulated time until the robot stands and every component is at work."""
+
+WALK_S = 12.0
+"""Simulated time that is measured: more than one foothold, with its swing and its probing."""
+
+TRAJOPT_SOLVES = 24
+
+# (row, figure, at most).
+_ASKED = (
+    ("mpc tick, median [ms]", lambda found: found["step_ms"]["mpc"]["p50"], 5.0),
+    ("mpc tick, p99 [ms]", lambda found: found["step_ms"]["mpc"]["p99"], 10.0),
+    ("trajopt, mean [ms]", lambda found: found["trajopt_ms"]["mean"], 100.0),
+    ("wbc tick, median [ms]", lambda found: found["step_ms"]["wbc"]["p50"], 0.8),
+)
+_REAL_TIME_FACTOR = 0.6
+
+
+def bench(say: Callable[[str], None] = print) -> dict:
+    """Measure and print a table `what | asked | got`; takes about a minute.
+
+    Returns:
+        `calibration_ms`; `step_ms`: median, p99 and maximum for each component; `mpc_stage_ms`: the same for
+        each stage of an mpc tick; `trajopt_ms`: mean, median, maximum and number of solves;
+        `real_time_factor` of the whole stack; `references`: how many had a leg swing and how many one probe.
+    """
+    found: dict = {"calibration_ms": calibration_ms()}
+    witness = _Witness()
+    found |= _walk(witness)
+    found["trajopt_ms"] = _trajopt(witness)
+    _tell(found, say)
+    return found
+
+
+def calibration_ms(repeats: int = 7) -> float:
+    """Best wall time of a fixed mixture of interpreted Python, small numpy calls and small matrix products."""
+    rng = np.random.default_rng(0)
+    small, stage = rng.normal(size=(67, 4, 3, 3)), rng.normal(size=(37, 37))
+
+    def work() -> float:
+        total = 0.0
+        for n in range(400):
+            product = small @ small
+            product *= 0.5
+            total += float((stage @ stage)[0, 0]) + sum(i * 0.5 for i in range(100)) + n
+        return total
+
+    times = []
+    for _ in range(repeats):
+        begun = perf_counter()
+        work()
+        times.append(1e3 * (perf_counter() - begun))
+    return min(times)
+
+
+class _Witness:
+    """Keeps of the bus what the figures need."""
+
+    def __init__(self) -> None:
+        self.stages: dict[str, list[float]] = {}
+        self.swinging = self.probing = 0
+        self.request: Message | None = None
+        self.estimate: Message | None = None
+        self._last_estimate: Message | None = None
+
+    def __call__(self, key: str, message: Message) -> None:
+        if key == "mpc/policy" and message.valid:
+            for stage, ms in zip(message.stage, message.stage_ms.tolist(), strict=True):
+                self.stages.setdefault(stage, []).append(ms)
+        elif key == "fsm/reference":
+            self.swinging += message.swing_leg >= 0
+            self.probing += message.probe_leg >= 0
+        elif key == "state/estimate":
+            self._last_estimate = message
+        elif key == "trajopt/request":
+            self.request, self.estimate = message, self._last_estimate
+
+
+def _walk(witness: _Witness) -> dict:
+    """Walk over flat ground in lockstep."""
+    stack = Lockstep(Deployment())
+    stack.command("forward")
+    stack.run(WARM_UP_S)
+    skipped = {name: len(executor.step_ms) for name, executor in stack.executors.items()}
+    stack.listen(witness)
+    begun = perf_counter()
+    stack.run(WARM_UP_S + WALK_S)
+    wall = perf_counter() - begun
+    steps = {name: executor.step_ms[skipped[name] :] for name, executor in stack.executors.items()}
+    return {
+        "step_ms": {name: _spread(times) for name, times in steps.items() if times},
+        "mpc_stage_ms": {stage: _spread(times) for stage, times in witness.stages.items()},
+        "real_time_factor": WALK_S / wall,
+        "references": {"swing": int(witness.swinging), "probe": int(witness.probing)},
+    }
+
+
+def _trajopt(witness: _Witness) -> dict:
+    """The walk's last request, solved anew again and again."""
+    if witness.request is None or witness.estimate is None:
+        raise RuntimeError(f"bench: no trajopt/request within {WALK_S} s of walking; does the robot walk?")
+    component = Trajopt(Deployment())
+    component.warm_up()
+    inbox, times = Inbox(component.inputs), []
+    outbox = Outbox(component.outputs, lambda key, message: None)
+    inbox.deliver("state/estimate", witness.estimate)
+    for _ in range(TRAJOPT_SOLVES + 1):
+        inbox.deliver("trajopt/request", witness.request)
+        begun = perf_counter()
+        component.step(witness.estimate.t, inbox, outbox)
+        times.append(1e3 * (perf_counter() - begun))
+        inbox.clear_new()
+    return _spread(times[1:]) | {"mean": float(np.mean(times[1:])), "solves": TRAJOPT_SOLVES}
+
+
+def _spread(times: Iterable[float]) -> dict[str, float]:
+    times = np.asarray(times)
+    return {"p50": float(np.median(times)), "p99": float(np.percentile(times, 99)), "max": float(times.max())}
+
+
+def _tell(found: dict, say: Callable[[str], None]) -> None:
+    def row(what: str, asked: str, got: str) -> None:
+        say(f"{what:34} | {asked:>8} | {got}")
+
+    def spread(times: dict[str, float]) -> str:
+        return f"{times['p50']:6.2f} {times['p99']:6.2f} {times['max']:6.2f}"
+
+    row("what", "asked", "got")
+    for what, figure, limit in _ASKED:
+        got = figure(found)
+        row(what, f"<= {limit:g}", f"{got:6.2f}{'' if got <= limit else '  missed'}")
+    factor = found["real_time_factor"]
+    missed = "" if factor >= _REAL_TIME_FACTOR else "  missed"
+    row("lockstep real-time factor", f">= {_REAL_TIME_FACTOR:g}", f"{factor:6.2f}{missed}")
+    row("calibration [ms]", "", f"{found['calibration_ms']:6.2f}")
+    row("median, p99, max of a tick [ms]", "", "")
+    for name, times in found["step_ms"].items():
+        row(f"  {name}", "", spread(times))
+    row("stages of an mpc tick [ms]", "", "")
+    for stage, times in found["mpc_stage_ms"].items():
+        row(f"  {stage}", "", spread(times))
+    say(
+        f"Over {WALK_S:g} simulated s of walking on flat ground; {found['references']['swing']} references with a "
+        f"swing, {found['references']['probe']} with probing; {found['trajopt_ms']['solves']} solves of trajopt. "
+        "None of this is a timed test."
+    )
