@@ -44,6 +44,7 @@ class Ocp:
     force_limits: Barrier = Barrier(1.0, 0.5)  # [N]
     # Table I has mu = 100: in metres a centring force of kilonewtons; 10 keeps the margin above 40 mm.
     support_polygon: Barrier = Barrier(10.0, 0.02)  # [m]
+    balance_s: float = 0.2  # eq. (5) on the capture point, sqrt(z/g) at 0.4 m; 0: on the CoM, as in the paper
     probing_force: Barrier = Barrier(0.7, 0.7)  # [N]
     friction: float = 0.5  # mu_c of eq. (3)
     cone_regularisation_n2: float = 4.0  # rounds the cone's tip; asks f_n of at least its root over mu_c

@@ -75,7 +75,7 @@ def moved(nodes, node, delta):
 @pytest.mark.parametrize("term", (PROBLEM.tracking, *PROBLEM.constraints), ids=lambda term: term.name)
 def test_gradients_are_those_of_the_value(term):
     qp = StageQP(N, 24, 12)
-    model = QuadraticModel(qp)
+    model = QuadraticModel(qp, Ocp().balance_s)
     term.add(NODES, model)
     model.write(NODES.linear)
     H, g = qp.H, qp.g
@@ -130,7 +130,8 @@ def test_probing_falls_short_of_the_asked_force_and_keeps_inside_the_polygon(leg
     nodes = problem.linearise(step.iterate, reference)
     held = step.iterate.force_W[25:, leg, 2]
     assert 0.80 * asked < held.mean() < asked
-    assert problem.violations(nodes)["support_polygon"] < reference.support_margin_m - 0.01
+    # Of the margin alpha, the capture point may use up most while the base leans; never all.
+    assert problem.violations(nodes)["support_polygon"] < reference.support_margin_m - 0.005
 
 
 def test_without_the_polygon_the_force_is_tracked_closer():
