@@ -70,6 +70,40 @@ class Session:
 
         self._kept.append(self._session.declare_subscriber(f"{self._prefix}/{key}", on_sample))
 
+    def newest(self, key: str) -> Callable[[], bytes | None]:
+        """A function that gives the newest message since it was last called, or None.
+
+        Nothing runs between two calls, whatever the topic's rate: right for a display.
+        """
+        subscriber = self._session.declare_subscriber(f"{self._prefix}/{key}", zenoh.handlers.RingChannel(1))
+        self._kept.append(subscriber)
+
+        def take() -> bytes | None:
+            sample = subscriber.try_recv()
+            return None if sample is None else sample.payload.to_bytes()
+
+        return take
+
+    def serve(self, key: str, answer: Callable[[], list[bytes]]) -> None:
+        """Give `answer()` to everyone who asks for a key; it runs in the session's thread."""
+        whole = f"{self._prefix}/{key}"
+
+        def on_query(query: zenoh.Query) -> None:
+            with query:
+                for index, payload in enumerate(answer()):
+                    query.reply(f"{whole}/{index}", payload)
+
+        self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
+
+    def ask(self, key: str, timeout_s: float = 2.0) -> list[bytes]:
+        """What is served under a key, in order; empty when nobody serves it."""
+        replies = self._session.get(f"{self._prefix}/{key}/*", timeout=timeout_s)
+        answers = {}
+        for reply in replies:
+            if reply.ok is not None:
+                answers[int(str(reply.ok.key_expr).rsplit("/", 1)[1])] = reply.ok.payload.to_bytes()
+        return [answers[index] for index in sorted(answers)]
+
     def close(self) -> None:
         """Leave the bus."""
         self._session.close()

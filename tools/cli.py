@@ -60,6 +60,8 @@ def _parser() -> argparse.ArgumentParser:
     child.add_argument("config")
     child.add_argument("name", help="io, estimator, wbc, mpc, fsm, trajopt or elevation_map")
     child.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    child.add_argument("--boot", type=int, default=0, help="how often this process has been restarted")
+    child.add_argument("--parent", type=int, default=0, help="process id that must live on; 0 the caller's")
     child.set_defaults(run=_child)
     command = commands.add_parser("command", help="command the robot of a running stack")
     command.add_argument("command", help="stand, sit, forward, backward, left, right, stop or damp")
@@ -97,16 +99,19 @@ def _run(call: argparse.Namespace) -> int:
 
 
 def _child(call: argparse.Namespace) -> int:
+    from surefoot.bus.topics import PROCESSES
     from surefoot.components.clock_master import ClockMaster
     from surefoot.components.runner import HubRunner, Runner
     from surefoot.config.deployment import load_deployment
 
     deployment = load_deployment(_deployment_file(call.config), call.set)
+    if call.name not in PROCESSES:
+        raise ValueError(f"no process {call.name!r}; there are {', '.join(PROCESSES)}")
     if call.name != "io":
-        return Runner(deployment, call.name).run()
-    return (
-        ClockMaster(deployment).run() if deployment.run.clock == "simulated" else HubRunner(deployment, "io").run()
-    )
+        return Runner(deployment, call.name, call.boot, call.parent).run()
+    if deployment.run.clock == "simulated":
+        return ClockMaster(deployment, call.boot, call.parent).run()
+    return HubRunner(deployment, "io", call.boot, call.parent).run()
 
 
 def _command(call: argparse.Namespace) -> int:
