@@ -16,7 +16,16 @@ import zenoh
 
 from surefoot.bus.errors import BusError
 
-_CONNECT_MS = 10_000
+_CONNECT_MS = 30_000
+_TX = {
+    "lease": 2000,
+    "keep_alive": 4,
+    # A stream to a reader that is late is dropped at once: to wait for it would hold up the others.
+    "queue": {
+        "size": {"data": 16, "real_time": 16},
+        "congestion_control": {"drop": {"wait_before_drop": 0}},
+    },
+}
 
 
 def socket_path(namespace: str) -> Path:
@@ -25,10 +34,7 @@ def socket_path(namespace: str) -> Path:
 
 
 class Session:
-    """Publishes and subscribes bytes under a namespace.
-
-    Publishing blocks when a queue is full, so that nothing is lost between processes of one machine.
-    """
+    """Publishes and subscribes bytes under a namespace."""
 
     def __init__(self, namespace: str, hub: bool = False, connect_ms: int = _CONNECT_MS):
         """Open the hub, or connect to it.
@@ -51,13 +57,19 @@ class Session:
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._kept: list[object] = []
 
-    def put(self, key: str, payload: bytes) -> None:
-        """Publish bytes on a key of the namespace."""
+    def put(self, key: str, payload: bytes, lossless: bool = True) -> None:
+        """Publish bytes on a key of the namespace.
+
+        Args:
+            key: what follows the namespace.
+            payload: the bytes.
+            lossless: block while a reader's queue is full. In real time a stream must not: one slow reader, a
+                display, would hold up the control chain. What the first message of a key asks, all get.
+        """
         publisher = self._publishers.get(key)
         if publisher is None:
-            publisher = self._session.declare_publisher(
-                f"{self._prefix}/{key}", congestion_control=zenoh.CongestionControl.BLOCK
-            )
+            control = zenoh.CongestionControl.BLOCK if lossless else zenoh.CongestionControl.DROP
+            publisher = self._session.declare_publisher(f"{self._prefix}/{key}", congestion_control=control)
             self._publishers[key] = publisher
         publisher.put(payload)
 
@@ -138,7 +150,7 @@ def _config(endpoint: str, hub: bool, connect_ms: int) -> dict:
     config: dict = {
         "mode": "router" if hub else "client",
         "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
-        "transport": {"shared_memory": {"enabled": False}, "link": {"tx": {"lease": 2000, "keep_alive": 4}}},
+        "transport": {"shared_memory": {"enabled": False}, "link": {"tx": _TX}},
     }
     if hub:
         config["listen"] = {"endpoints": [endpoint]}

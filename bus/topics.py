@@ -73,9 +73,9 @@ PROCESSES = processes()
 TOPICS = {
     topic.key: topic
     for topic in (
-        Topic("hw/state", m.HardwareState, "io", 500.0, 0.010),
-        Topic("joint/command", m.JointCommand, "wbc", 250.0, 0.020),
-        Topic("state/estimate", m.StateEstimate, "estimator", 500.0, 0.010),
+        Topic("hw/state", m.HardwareState, "io", 500.0, 0.040),
+        Topic("joint/command", m.JointCommand, "wbc", 250.0, 0.040),
+        Topic("state/estimate", m.StateEstimate, "estimator", 500.0, 0.040),
         Topic("fsm/reference", m.MotionReference, "fsm", 250.0, 0.100),
         Topic("fsm/event", m.FsmEvent, "fsm"),
         Topic("mpc/policy", m.Policy, "mpc", MPC_RATE_HZ["paper"], 0.100),

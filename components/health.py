@@ -72,7 +72,7 @@ class Health:
             input_age_s=np.array(ages),
         )
         self._seq += 1
-        self._session.put(f"status/{self._component.name}", encode(status))
+        self._session.put(f"status/{self._component.name}", encode(status), lossless=False)
 
     def _words(self) -> str:
         """All there is to say, the gravest first."""

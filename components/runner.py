@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import os
 import queue
 import time
 
@@ -19,7 +18,6 @@ from surefoot.components.stepper import Stepper
 from surefoot.config.deployment import Deployment
 
 _LOOK_S = 0.2
-_CONTROL_CHAIN = ("io", "estimator", "wbc")
 
 
 class Runner:
@@ -33,19 +31,18 @@ class Runner:
         self._deployment, self._name = deployment, name
         self._process = processes(deployment.mpc.profile)[name]
         self._monotonic = deployment.run.clock == "monotonic"
-        self._fifo_refused = self._ask_fifo()
         self._session = Session(deployment.run.namespace, hub=self.hub)
-        trigger = self._process.trigger if self._monotonic else ""
+        trigger = self._process.trigger if self._monotonic else None
         self._stepper = Stepper(component_class(name)(deployment), self._session, boot, trigger)
 
     def run(self) -> int:
         """Until the end; returns the exit code."""
         health = self._stepper.health
-        self._stepper.connect()
         self._stepper.component.warm_up()
         gc.collect()
         gc.freeze()
-        health.life, health.reason = Life.IDLE, self._fifo_refused
+        self._stepper.connect()  # a process that is busy with itself would hold up the bus
+        health.life = Life.IDLE
         try:
             if not self._monotonic:
                 self._follow_simulated_time()
@@ -127,17 +124,6 @@ class Runner:
 
     def _live_t(self) -> float:
         return time.monotonic() - self._deployment.run.epoch_s
-
-    def _ask_fifo(self) -> str:
-        """Real-time scheduling for the control chain, where wanted; what to do if it is refused, in words."""
-        priority = self._deployment.run.fifo_priority
-        if not (self._monotonic and priority and self._name in _CONTROL_CHAIN):
-            return ""
-        try:
-            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
-        except (PermissionError, AttributeError) as error:
-            return f"SCHED_FIFO {priority} refused ({error}): give the user rtprio in limits.conf, or CAP_SYS_NICE"
-        return ""
 
 
 class HubRunner(Runner):

@@ -8,6 +8,7 @@ from collections import deque
 from surefoot.bus.codec import check, encode
 from surefoot.bus.message import Message
 from surefoot.bus.session import Session
+from surefoot.bus.topics import TOPICS
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Component, Inbox, Life, Outbox
 from surefoot.components.health import Health
@@ -26,8 +27,16 @@ class Stepper:
         health: what is told of it.
     """
 
-    def __init__(self, component: Component, session: Session, boot: int = 0, trigger: str = ""):
-        """`boot` counts the restarts of the process; `trigger` is the topic whose messages wake it."""
+    def __init__(self, component: Component, session: Session, boot: int = 0, trigger: str | None = None):
+        """For a component in this process.
+
+        Args:
+            component: the component.
+            session: the bus.
+            boot: counts the restarts of the process.
+            trigger: None with simulated time, when no message may be lost; on the monotonic clock the topic
+                whose messages release it, or "".
+        """
         self.component = component
         self.buffers = TopicBuffers(component.inputs, trigger)
         self.outbox = Outbox(component.outputs, self._send, boot)
@@ -36,12 +45,12 @@ class Stepper:
         self._inbox = Inbox(component.inputs)
         self._outgoing: list[tuple[str, Message]] = []
         self._kept: dict[str, deque[bytes]] = {key: deque(maxlen=KEPT) for key in component.outputs}
+        self._lossless = {key: trigger is None or not TOPICS[key].rate_hz for key in component.outputs}
         self._active = False
 
     def connect(self) -> None:
         """Begin to listen to the inputs, and keep the last outputs for readers that come late."""
-        for key in self.component.inputs:
-            self._session.subscribe(key, self.buffers.put)
+        self.buffers.connect(self._session)
         for key, kept in self._kept.items():
             self._session.serve(f"{clock.KEPT}/{key}", lambda kept=kept: list(kept))
 
@@ -82,7 +91,7 @@ class Stepper:
         for key, message in self._outgoing:
             payload = encode(message)
             self._kept[key].append(payload)
-            self._session.put(key, payload)
+            self._session.put(key, payload, self._lossless[key])
             counts[key] = counts.get(key, 0) + 1
         self._outgoing.clear()
         return counts

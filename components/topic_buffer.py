@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from threading import Condition
 
 from surefoot.bus.codec import decode
 from surefoot.bus.errors import MessageError
 from surefoot.bus.message import Message
+from surefoot.bus.session import Session
 from surefoot.bus.topics import TOPICS
 from surefoot.components.component import Inbox
 
@@ -26,8 +28,7 @@ class _Topic:
         self.waiting: deque[bytes] = deque(maxlen=_WINDOW)
         self.early: dict[int, tuple[Message, int]] = {}
         self.had: dict[int, int] = {}
-        self.arrivals = self.overflown = 0
-        self.first = self.next = self.misfits = 0
+        self.arrivals = self.first = self.next = self.misfits = 0
         self.boot = -1
 
     def jump(self, seq: int) -> None:
@@ -41,29 +42,44 @@ class TopicBuffers:
     """Bytes in from the bus's thread, messages out to the step; a bad message is counted and dropped.
 
     With simulated time every message has its place, by its sequence number: what comes twice or out of place
-    is another publisher's. On the monotonic clock the newest counts, and what falls behind is dropped.
+    is another publisher's. On the monotonic clock the newest counts: of a stream that does not release the
+    reader nothing else is even looked at, and what falls behind is dropped.
 
     Attributes:
         bad: messages dropped: malformed, or not of the topic's writer.
         last_error: what was wrong with the latest of them, by topic.
     """
 
-    def __init__(self, keys: tuple[str, ...], trigger: str = ""):
-        """`trigger`: the one topic whose messages wake a waiting reader; all of them if empty."""
+    def __init__(self, keys: tuple[str, ...], trigger: str | None = None):
+        """For the topics `keys`.
+
+        Args:
+            keys: the topics read.
+            trigger: None with simulated time; on the monotonic clock the topic whose messages release the
+                reader, or "".
+        """
         self.bad = 0
         self.last_error = ""
         self._arrived = Condition()
         self._topics = {key: _Topic(key) for key in keys}
         self._trigger = trigger
+        self._newest: dict[str, Callable[[], bytes | None]] = {}
+
+    def connect(self, session: Session) -> None:
+        """Begin to listen."""
+        for key in self._topics:
+            if self._trigger in (None, key) or not TOPICS[key].rate_hz:
+                session.subscribe(key, self.put)
+            else:
+                self._newest[key] = session.newest(key)
 
     def put(self, key: str, payload: bytes) -> None:
         """Store one message (the bus's thread)."""
         with self._arrived:
             topic = self._topics[key]
-            topic.overflown += len(topic.waiting) == _WINDOW
             topic.waiting.append(payload)
             topic.arrivals += 1
-            if self._trigger in ("", key):
+            if self._trigger in (None, key):
                 self._arrived.notify_all()
 
     # Monotonic clock ------------------------------------------------------------------------------------
@@ -78,16 +94,17 @@ class TopicBuffers:
     def deliver_all(self, inbox: Inbox) -> None:
         """Hand over everything that has arrived."""
         for key, topic in self._topics.items():
+            if key in self._newest and (payload := self._newest[key]()) is not None:
+                topic.waiting.append(payload)
             while topic.waiting:
                 message = self._decode(key, topic.waiting.popleft())
                 if message is not None and self._in_sequence(key, topic, message):
-                    topic.overflown = 0
                     inbox.deliver(key, message)
 
     def _in_sequence(self, key: str, topic: _Topic, message: Message) -> bool:
         """Whether a message follows the last one; a restarted writer, or a long row of misfits, begins anew."""
         ahead = message.seq - topic.next
-        if topic.boot < message.boot or 0 <= ahead <= _WINDOW + topic.overflown or topic.misfits >= _MISFITS:
+        if topic.boot < message.boot or ahead >= 0 or topic.misfits >= _MISFITS:
             topic.boot, topic.next, topic.misfits = message.boot, message.seq + 1, 0
             return True
         topic.misfits += 1

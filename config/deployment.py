@@ -31,7 +31,6 @@ class Run:
     log_dir: str = "log"  # where process logs go, relative to the working directory
     solve_share_max: Annotated[float, Within(0.05, 1.0)] = 0.6  # of 10 ms; slower machines run mpc.profile light
     cores_min: Annotated[int, Within(1, 256)] = 4  # likewise with fewer cores: seven processes share them
-    fifo_priority: Annotated[int, Within(0, 80)] = 0  # SCHED_FIFO of the control chain, monotonic clock; 0 off
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Za-z0-9_-]+", self.namespace):

@@ -14,6 +14,21 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 from surefoot.bus.errors import BusError  # noqa: E402
 from surefoot.config.typed_toml import ConfigError  # noqa: E402
 
+_RUN = """\
+Start every process of a deployment and show how it goes, on one screen.
+
+The run ends when the platform is crossed, when the robot has fallen or been damped, after --for seconds of
+its time, or with Ctrl-C; then every process is ended in order. A robot that finds no safe foothold goes back to
+its last one and stands: on a terminal the run goes on and waits for `surefoot command backward` (or left,
+right, forward, stop) from another one; with --plain, or without a terminal, that ends the run.
+
+With the simulated clock time waits for every process: the run may be slower than real time, and
+`surefoot restart NAME` changes nothing else. With --set run.clock=monotonic it keeps real time; a machine that
+cannot solve the MPC fast enough says so and runs its light profile.
+
+exit code: 0 crossed, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
+"""
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command; returns the exit code: 0 done, 1 the run failed, 2 the call was wrong."""
@@ -47,7 +62,11 @@ def _parser() -> argparse.ArgumentParser:
     graded.add_argument("--out", type=Path, required=True, help="folder for results.json and summary.md")
     graded.set_defaults(run=_eval)
     run = commands.add_parser(
-        "run", help="start every process of a deployment", epilog="example: surefoot run planks"
+        "run",
+        help="start every process of a deployment",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_RUN,
+        epilog="example: surefoot run planks",
     )
     run.add_argument("config", nargs="?", default="planks", help="a deployment file, or its name in config/")
     run.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
@@ -74,6 +93,8 @@ def _parser() -> argparse.ArgumentParser:
     status = commands.add_parser("status", help="health of a running stack, once")
     status.add_argument("--namespace", default="surefoot")
     status.set_defaults(run=_status)
+    bench = commands.add_parser("bench", help="measure the hot paths on this machine")
+    bench.set_defaults(run=_bench)
     topics = commands.add_parser("topics", help="list every topic, its type, writer and rate")
     topics.set_defaults(run=_topics)
     return parser
@@ -91,11 +112,9 @@ def _eval(call: argparse.Namespace) -> int:
 
 
 def _run(call: argparse.Namespace) -> int:
-    from surefoot.config.deployment import load_deployment
     from surefoot.tools.live_run import live_run
 
-    path = _deployment_file(call.config)
-    return live_run(path, call.set, load_deployment(path, call.set), call.seconds, call.plain)
+    return live_run(_deployment_file(call.config), call.set, call.seconds, call.plain)
 
 
 def _child(call: argparse.Namespace) -> int:
@@ -169,6 +188,13 @@ def _status(call: argparse.Namespace) -> int:
         figures = f"{status.rate_hz:6.0f} Hz  p50 {status.step_p50_ms:6.2f} ms  p99 {status.step_p99_ms:6.2f} ms"
         print(f"{name:14s} {status.life:13s} {figures}  bad {status.bad_messages}  {status.reason}")
     return 0 if len(heard) == len(PROCESSES) else 1
+
+
+def _bench(call: argparse.Namespace) -> int:
+    from surefoot.tools.bench import bench
+
+    bench()
+    return 0
 
 
 def _topics(call: argparse.Namespace) -> int:
