@@ -104,7 +104,8 @@ class TopicBuffers:
     def _in_sequence(self, key: str, topic: _Topic, message: Message) -> bool:
         """Whether a message follows the last one; a restarted writer, or a long row of misfits, begins anew."""
         ahead = message.seq - topic.next
-        if topic.boot < message.boot or ahead >= 0 or topic.misfits >= _MISFITS:
+        follows = message.boot > topic.boot or (message.boot == topic.boot and ahead >= 0)
+        if follows or topic.misfits >= _MISFITS:
             topic.boot, topic.next, topic.misfits = message.boot, message.seq + 1, 0
             return True
         topic.misfits += 1

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from surefoot.bus.messages import ProcessStatus
-from surefoot.bus.topics import TOPICS, nominal_hz, processes
+from surefoot.bus.topics import PROCESSES, TOPICS, nominal_hz, processes
 from surefoot.config.robot import LEGS
 from surefoot.tools.picture import Picture
 from surefoot.tools.verdict import Verdict
@@ -75,7 +75,13 @@ def process_table(picture: Picture, mpc_profile: str) -> Table:
     table = Table(expand=True, box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False)
     left = ("process", "state", "oldest input")
     for column in (*left[:2], "Hz", "p50 ms", "p99 ms", left[2], "overruns", "bad", "restarts"):
-        table.add_column(column, justify="left" if column in left else "right", no_wrap=True, overflow="ellipsis")
+        table.add_column(
+            column,
+            justify="left" if column in left else "right",
+            no_wrap=True,
+            overflow="ellipsis",
+            min_width=max(map(len, PROCESSES)) if column == "process" else None,
+        )
     for name, process in processes(mpc_profile).items():
         watched = picture.processes[name]
         status = watched.status
