@@ -38,10 +38,11 @@ class ClockMaster:
         self._end = ProcessEnd(parent)
         self.session = Session(deployment.run.namespace, hub=True)
         self._desk = OperatorDesk(self.session)
-        self._stepper = Stepper(component_class("io")(deployment), self.session, boot)
+        table = processes(deployment.mpc.profile)
+        self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)
         self._remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
         executors = {"io": _HostedExecutor(self._stepper), **self._remote}
-        self.scheduler = Scheduler(executors, processes(deployment.mpc.profile))
+        self.scheduler = Scheduler(executors, table)
 
     def run(self) -> int:
         """Until told to stop or the parent is gone; returns the exit code."""

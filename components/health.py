@@ -11,6 +11,7 @@ import numpy as np
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import ProcessStatus
 from surefoot.bus.session import Session
+from surefoot.bus.topics import Process, nominal_hz
 from surefoot.components.component import Component, Inbox, Life
 from surefoot.components.topic_buffer import TopicBuffers
 
@@ -27,11 +28,14 @@ class Health:
         t: run's time of the last status [s].
     """
 
-    def __init__(self, component: Component, session: Session, buffers: TopicBuffers, boot: int = 0):
+    def __init__(
+        self, component: Component, session: Session, buffers: TopicBuffers, process: Process, boot: int = 0
+    ):
         self.life, self.reason, self.lost = Life.INIT, "", ""
         self.overruns = self.steps = 0
         self.t = 0.0
         self._component, self._session, self._buffers, self._boot = component, session, buffers, boot
+        self._nominal_hz = nominal_hz(process)
         self._recent: deque[float] = deque(maxlen=2000)
         self._told, self._told_steps = time.monotonic(), 0
         self._seq = 0
@@ -63,6 +67,7 @@ class Health:
             pid=os.getpid(),
             steps=self.steps,
             rate_hz=rate,
+            nominal_hz=self._nominal_hz,
             step_p50_ms=float(np.percentile(recent, 50)),
             step_p99_ms=float(np.percentile(recent, 99)),
             step_max_ms=float(recent.max()),

@@ -32,8 +32,8 @@ class Runner:
         self._process = processes(deployment.mpc.profile)[name]
         self._monotonic = deployment.run.clock == "monotonic"
         self._session = Session(deployment.run.namespace, hub=self.hub)
-        trigger = self._process.trigger if self._monotonic else None
-        self._stepper = Stepper(component_class(name)(deployment), self._session, boot, trigger)
+        component = component_class(name)(deployment)
+        self._stepper = Stepper(component, self._session, self._process, boot, simulated=not self._monotonic)
 
     def run(self) -> int:
         """Until the end; returns the exit code."""

@@ -8,7 +8,7 @@ from collections import deque
 from surefoot.bus.codec import check, encode
 from surefoot.bus.message import Message
 from surefoot.bus.session import Session
-from surefoot.bus.topics import TOPICS
+from surefoot.bus.topics import TOPICS, Process
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Component, Inbox, Life, Outbox
 from surefoot.components.health import Health
@@ -27,25 +27,27 @@ class Stepper:
         health: what is told of it.
     """
 
-    def __init__(self, component: Component, session: Session, boot: int = 0, trigger: str | None = None):
+    def __init__(
+        self, component: Component, session: Session, process: Process, boot: int = 0, simulated: bool = True
+    ):
         """For a component in this process.
 
         Args:
             component: the component.
             session: the bus.
+            process: when it steps.
             boot: counts the restarts of the process.
-            trigger: None with simulated time, when no message may be lost; on the monotonic clock the topic
-                whose messages release it, or "".
+            simulated: time waits for every message; on the monotonic clock a stream's newest is enough.
         """
         self.component = component
-        self.buffers = TopicBuffers(component.inputs, trigger)
+        self.buffers = TopicBuffers(component.inputs, None if simulated else process.trigger)
         self.outbox = Outbox(component.outputs, self._send, boot)
-        self.health = Health(component, session, self.buffers, boot)
+        self.health = Health(component, session, self.buffers, process, boot)
         self._session = session
         self._inbox = Inbox(component.inputs)
         self._outgoing: list[tuple[str, Message]] = []
         self._kept: dict[str, deque[bytes]] = {key: deque(maxlen=KEPT) for key in component.outputs}
-        self._lossless = {key: trigger is None or not TOPICS[key].rate_hz for key in component.outputs}
+        self._lossless = {key: simulated or not TOPICS[key].rate_hz for key in component.outputs}
         self._active = False
 
     def connect(self) -> None:

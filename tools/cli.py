@@ -14,6 +14,8 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 from surefoot.bus.errors import BusError  # noqa: E402
 from surefoot.config.typed_toml import ConfigError  # noqa: E402
 
+_LISTEN_S = 1.5
+
 _RUN = """\
 Start every process of a deployment and show how it goes, on one screen.
 
@@ -169,25 +171,25 @@ def _say_on_bus(namespace: str, key: str, text: str) -> None:
 def _status(call: argparse.Namespace) -> int:
     import time
 
+    from rich.console import Console
+
     from surefoot.bus.codec import decode
     from surefoot.bus.messages import ProcessStatus
     from surefoot.bus.session import Session, socket_path
-    from surefoot.bus.topics import PROCESSES
+    from surefoot.tools.picture import Picture
+    from surefoot.tools.status_screen import health, process_table
 
     session = Session(call.namespace, connect_ms=2000)
-    heard: dict[str, ProcessStatus] = {}
-    session.subscribe("status/*", lambda key, payload: heard.update({key[7:]: decode(ProcessStatus, payload)}))
-    time.sleep(1.5)
+    picture = Picture()
+    session.subscribe("status/*", lambda key, payload: picture.note_status(decode(ProcessStatus, payload)))
+    time.sleep(_LISTEN_S)
     session.close()
-    print(f"connected to {socket_path(call.namespace)}")
-    for name in PROCESSES:
-        status = heard.get(name)
-        if status is None:
-            print(f"{name:14s} silent for 1.5 s: is its process running?")
-            continue
-        figures = f"{status.rate_hz:6.0f} Hz  p50 {status.step_p50_ms:6.2f} ms  p99 {status.step_p99_ms:6.2f} ms"
-        print(f"{name:14s} {status.life:13s} {figures}  bad {status.bad_messages}  {status.reason}")
-    return 0 if len(heard) == len(PROCESSES) else 1
+    console = Console()
+    console.print(f"connected to {socket_path(call.namespace)}", process_table(picture), health(picture), sep="\n")
+    silent = [name for name, watched in picture.processes.items() if watched.status is None]
+    if silent:
+        print(f"silent for {_LISTEN_S} s: {', '.join(silent)}; are they running?")
+    return 1 if silent else 0
 
 
 def _bench(call: argparse.Namespace) -> int:

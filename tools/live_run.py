@@ -61,7 +61,7 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
             with Live(console=console, screen=True, auto_refresh=False) as live:
 
                 def draw(picture: Picture) -> None:
-                    live.update(screen(picture, state, title, deployment.mpc.profile), refresh=True)
+                    live.update(screen(picture, state, title), refresh=True)
 
                 reason = supervisor.run(until, _Seldom(0.2, draw))
         else:
@@ -147,5 +147,5 @@ def _summary(console: Console, picture: Picture, reason: str, state: Verdict, de
         lines.append(f"next: {state.advice}")
     lines.append(f"process logs: {deployment.run.log_dir}/")
     if not state.good:
-        console.print(process_table(picture, deployment.mpc.profile))
+        console.print(process_table(picture))
     console.print("\n".join(lines), markup=False, highlight=False)

@@ -73,6 +73,12 @@ class Picture:
         self.counts[event.kind] += 1
         self.displacement_m = max(self.displacement_m, event.displacement_m)
 
+    def note_status(self, status: ProcessStatus) -> None:
+        """Take in what a process says of itself."""
+        watched = self.processes.get(status.process)
+        if watched is not None:
+            watched.status, watched.heard = status, time.monotonic()
+
     def note_time(self) -> None:
         """Mark how far the run's clock has come by now."""
         now = time.monotonic(), self.t

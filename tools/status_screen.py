@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import time
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Group
 from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
 from surefoot.bus.messages import ProcessStatus
-from surefoot.bus.topics import PROCESSES, TOPICS, nominal_hz, processes
+from surefoot.bus.topics import TOPICS
 from surefoot.config.robot import LEGS
 from surefoot.tools.picture import Picture
 from surefoot.tools.verdict import Verdict
@@ -21,12 +20,12 @@ TOLD = ("contact", "collapse", "late_collapse", "accepted", "rejected", "stopped
 
 _SILENT_S = 3.0
 _RATE_BAND = 0.2  # a rate is well within so much of nominal
-_EVENTS, _REASONS = 6, 4
+_EVENTS, _REASONS = 5, 4
 
 
-def screen(picture: Picture, verdict: Verdict, title: str, mpc_profile: str) -> Group:
-    """A rich renderable of what the supervisor has heard; fits 100 columns and 30 lines."""
-    parts = [_machine(picture, title), process_table(picture, mpc_profile), _health(picture), _events(picture)]
+def screen(picture: Picture, verdict: Verdict, title: str) -> Group:
+    """A rich renderable of what the supervisor has heard; fits 80 columns and 30 lines."""
+    parts = [_machine(picture, title), process_table(picture), health(picture), _events(picture)]
     if verdict.reason:
         parts.append(Text(f"{verdict.reason}. {verdict.advice}", style="bold red"))
     return Group(*parts)
@@ -70,26 +69,30 @@ def _machine(picture: Picture, title: str) -> Panel:
     return Panel("\n".join(lines), title=title)
 
 
-def process_table(picture: Picture, mpc_profile: str) -> Table:
+def process_table(picture: Picture) -> Table:
     """Each process's life, rate against nominal, step times, oldest input, and what went wrong how often."""
-    table = Table(expand=True, box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False)
-    left = ("process", "state", "oldest input")
-    for column in (*left[:2], "Hz", "p50 ms", "p99 ms", left[2], "overruns", "bad", "restarts"):
-        table.add_column(
-            column,
-            justify="left" if column in left else "right",
-            no_wrap=True,
-            overflow="ellipsis",
-            min_width=max(map(len, PROCESSES)) if column == "process" else None,
-        )
-    for name, process in processes(mpc_profile).items():
-        watched = picture.processes[name]
+    table = Table(expand=True, box=None, padding=(0, 1, 0, 0), header_style="dim")
+    # Least widths: the input's name gives way first on a narrow terminal.
+    widths = {
+        "process": 13,
+        "state": 5,
+        "Hz": 7,
+        "p50 ms": 6,
+        "p99 ms": 6,
+        "oldest input": 12,
+        "late": 4,
+        "bad": 3,
+    }
+    for column, width in (widths | {"restarts": 8}).items():
+        justify = "left" if column in ("process", "state", "oldest input") else "right"
+        table.add_column(column, justify=justify, no_wrap=True, overflow="ellipsis", min_width=width)
+    for name, watched in picture.processes.items():
         status = watched.status
         restarts = str(watched.restarts)
         if status is None:
-            table.add_row(name, "starting", *[""] * 6, restarts)
+            table.add_row(name, "not heard", *[""] * 6, restarts)
             continue
-        nominal = nominal_hz(process)
+        nominal = status.nominal_hz
         rate = f"{status.rate_hz:.0f}/{nominal:.0f}" if nominal else "on event"
         off = nominal and abs(status.rate_hz / nominal - 1.0) > _RATE_BAND
         table.add_row(
@@ -106,7 +109,7 @@ def process_table(picture: Picture, mpc_profile: str) -> Table:
     return table
 
 
-def _health(picture: Picture) -> Text:
+def health(picture: Picture) -> Text:
     """In words what is the matter with which process; nothing when all is well."""
     now, lines = time.monotonic(), []
     for name, watched in picture.processes.items():

@@ -229,10 +229,7 @@ class Supervisor:
 
     def _on_status(self, key: str, payload: bytes) -> None:
         with suppress(MessageError):
-            status = decode(ProcessStatus, payload)
-            watched = self.picture.processes.get(status.process)
-            if watched is not None:
-                watched.status, watched.heard = status, time.monotonic()
+            self.picture.note_status(decode(ProcessStatus, payload))
 
     def _on_event(self, key: str, payload: bytes) -> None:
         with suppress(MessageError):

@@ -38,7 +38,9 @@ def full_picture():
     )  # fmt: skip
     picture.margin_m = SupportMargin(robot)(estimate, picture.reference)
     for name, watched in picture.processes.items():
-        watched.status = ProcessStatus(process=name, life="RUN", reason="late for tea", rate_hz=99.0)
+        watched.status = ProcessStatus(
+            process=name, life="RUN", reason="late for tea", rate_hz=99.0, nominal_hz=50.0
+        )
         watched.heard = 1e12
     for _ in range(40):
         picture.note_event(FsmEvent(t=1.0, kind="accepted", leg=2, reason="it held", displacement_m=0.004))
@@ -48,20 +50,18 @@ def full_picture():
 
 def shown(picture, width=100):
     out = io.StringIO()
-    Console(file=out, width=width, height=40).print(
-        screen(picture, Verdict("it stopped", advice="go on"), "T", "light")
-    )
+    Console(file=out, width=width, height=40).print(screen(picture, Verdict("it stopped", advice="go on"), "T"))
     return out.getvalue()
 
 
-@pytest.mark.parametrize("width", [90, 100, 160])
+@pytest.mark.parametrize("width", [80, 100, 160])
 def test_everything_is_on_one_screen(width):
     text = shown(full_picture(), width)
-    assert len(text.splitlines()) <= 36
+    assert len(text.splitlines()) <= 30
     for words in (
         "PROBE", "why not", "FR", "alternative 2 of 3", "point 3 of 4", "asked  80 N, measured  83 N",
         "force 3 of 6", "support margin", "12.5 s", "real-time factor", "footholds accepted 40",
-        "displacement 4 mm", "99/50", "late for tea", "restarted, 1 of 3", "it stopped. go on", "it held",
+        "displacement 4", "99/50", "late for tea", "restarted, 1 of 3", "it stopped. go on", "it held",
     ):  # fmt: skip
         assert words in text, words
     assert all(name in text for name in PROCESSES)
