@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import socket
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -121,29 +122,34 @@ class Session:
         self._session.close()
 
 
+def refuse_second_hub(namespace: str) -> None:
+    """See that no hub serves a namespace yet.
+
+    Raises:
+        BusError: one does; says which process.
+    """
+    path = socket_path(namespace)
+    with socket.socket(socket.AF_UNIX) as probe:
+        try:
+            probe.connect(str(path))
+        except OSError:
+            return  # no socket, or one left by a process that is gone
+    owner = _owner_file(path)
+    who = f"process {owner.read_text().strip()}" if owner.exists() else "a process"
+    raise BusError(f"{who} already serves namespace {namespace!r}: stop it, or set another run.namespace")
+
+
+def _owner_file(path: Path) -> Path:
+    return path.with_suffix(".pid")
+
+
 def _make_room(path: Path, namespace: str) -> None:
     """The socket's folder, closed to others; a socket file left by a process that is gone is removed."""
     path.parent.mkdir(mode=0o700, exist_ok=True)
-    lock = path.with_suffix(".pid")
-    if lock.exists():
-        owner = lock.read_text().strip()
-        if owner.isdigit() and int(owner) != os.getpid() and _alive(int(owner)):
-            raise BusError(
-                f"process {owner} already serves namespace {namespace!r}: stop it, or set another run.namespace"
-            )
+    refuse_second_hub(namespace)
     path.unlink(missing_ok=True)
     path.with_name(path.name + ".lock").unlink(missing_ok=True)
-    lock.write_text(str(os.getpid()))
-
-
-def _alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True
+    _owner_file(path).write_text(str(os.getpid()))
 
 
 def _config(endpoint: str, hub: bool, connect_ms: int) -> dict:

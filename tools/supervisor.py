@@ -13,7 +13,7 @@ from pathlib import Path
 from surefoot.bus.codec import decode
 from surefoot.bus.errors import BusError, MessageError
 from surefoot.bus.messages import FsmEvent, MotionReference, ProcessStatus, StateEstimate
-from surefoot.bus.session import Session
+from surefoot.bus.session import Session, refuse_second_hub
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Component
@@ -62,8 +62,9 @@ class Supervisor:
         Whatever happens, no process is left behind.
 
         Raises:
-            BusError: io did not come up.
+            BusError: io did not come up, or another run has this namespace.
         """
+        refuse_second_hub(self._deployment.run.namespace)
         self._log_dir.mkdir(parents=True, exist_ok=True)
         try:
             self._start("io")

@@ -11,6 +11,7 @@ from surefoot.bus.errors import BusError
 from surefoot.bus.messages import JointCommand, MotionReference, StateEstimate
 from surefoot.bus.session import Session
 from surefoot.bus.topics import PROCESSES
+from surefoot.tools.cli import main
 
 
 def with_field(message, **fields):
@@ -70,7 +71,9 @@ def test_no_hub_is_a_clear_error():
         Session("nobody-listens-here", connect_ms=300)
 
 
-def test_a_second_hub_of_one_namespace_is_refused(stack):
+def test_a_second_hub_or_run_of_one_namespace_is_refused(stack, capsys):
     live = stack(leave_out=tuple(name for name in PROCESSES if name != "io"))
     with pytest.raises(BusError, match=r"already serves"):
         Session(live.namespace, hub=True)
+    assert main(["run", "flat", "--plain", "--set", f"run.namespace={live.namespace}"]) == 2
+    assert f"process {live.children['io'].pid} already serves" in capsys.readouterr().err
