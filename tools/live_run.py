@@ -44,7 +44,7 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
             deployment = load_deployment(config, overrides)
     supervisor = Supervisor(config, overrides, deployment)
     if note:
-        supervisor.picture.notes.append(note)
+        supervisor.note(note)
     interactive = console.is_terminal and not plain
     title = f"Surefoot, {config.name}, {deployment.run.clock} clock, mpc {deployment.mpc.profile}"
     state = Verdict()
@@ -70,6 +70,7 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
         reason, state = "ended by the user", Verdict("ended by the user", over=True, good=True)
     if reason == "stopped by command":
         state = Verdict(reason, over=True, good=True)
+    supervisor.note(f"{reason}. {state.advice}")
     _summary(console, supervisor.picture, reason, state, deployment)
     return 0 if state.good else 1
 

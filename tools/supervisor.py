@@ -100,14 +100,21 @@ class Supervisor:
     def restart(self, name: str) -> None:
         """Restart one process; what was done, or why not, is noted in the picture."""
         if name not in PROCESSES:
-            self._note(f"cannot restart {name!r}: there are {', '.join(PROCESSES)}")
+            self.note(f"cannot restart {name!r}: there are {', '.join(PROCESSES)}")
         elif name == "io":
-            self._note("cannot restart io: it holds the robot and the bus; stop the run instead")
+            self.note("cannot restart io: it holds the robot and the bus; stop the run instead")
         else:
             watched = self.picture.processes[name]
             self._end(watched)
             self._start_again(watched)
-            self._note(f"{name} restarted on request")
+            self.note(f"{name} restarted on request")
+
+    def note(self, words: str) -> None:
+        """Say something on the display and in the supervisor's log."""
+        self.picture.notes.append(words)
+        self._log_dir.mkdir(parents=True, exist_ok=True)
+        with self._log_of("supervisor").open("a") as log:
+            log.write(f"{self.picture.t:.3f} s  {words}\n")
 
     # Processes ------------------------------------------------------------------------------------------
 
@@ -128,7 +135,7 @@ class Supervisor:
         if watched.name == "fsm" and component_class("fsm").snapshot is Component.snapshot:
             # It keeps no memory of what the robot does, and would begin by damping it.
             self._command("stand")
-            self._note("fsm has lost its place and stands the robot: `surefoot command forward` goes on")
+            self.note("fsm has lost its place and stands the robot: `surefoot command forward` goes on")
         self._start(watched.name)
 
     @staticmethod
@@ -161,7 +168,7 @@ class Supervisor:
             if watched.crashes > MAX_CRASHES:
                 return f"{what}; it had been restarted {MAX_CRASHES} times"
             self._start_again(watched)
-            self._note(f"{what}; restarted, {watched.crashes} of {MAX_CRASHES}")
+            self.note(f"{what}; restarted, {watched.crashes} of {MAX_CRASHES}")
         return ""
 
     def _obituary(self, watched: Watched) -> str:
@@ -175,9 +182,6 @@ class Supervisor:
 
     def _log_of(self, name: str) -> Path:
         return self._log_dir / f"{name}.log"
-
-    def _note(self, words: str) -> None:
-        self.picture.notes.append(words)
 
     # The bus --------------------------------------------------------------------------------------------
 

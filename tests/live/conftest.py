@@ -157,6 +157,10 @@ class Supervised(Ear):
         """What the run has printed."""
         return self.output.read_text()
 
+    def log(self, name):
+        """The log of a process, or of the supervisor."""
+        return (self.output.parent / "logs" / f"{name}.log").read_text()
+
     def close(self):
         """End all."""
         if self.run.poll() is None:

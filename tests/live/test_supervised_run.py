@@ -48,6 +48,7 @@ def test_a_process_that_crashes_is_restarted_three_times_and_then_ends_the_run(s
     assert live.run.returncode == 1
     assert "wbc ended with signal 9, see" in said and "restarted, 3 of 3" in said
     assert "it had been restarted 3 times" in said and "wbc.log" in said
+    assert "restarted, 3 of 3" in live.log("supervisor")
 
 
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL], ids=lambda how: how.name)
