@@ -3,19 +3,23 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
+CONFIG ?= config/planks.toml
 
 # One BLAS thread a process: seven processes share the cores.
 export OMP_NUM_THREADS = 1
 export OPENBLAS_NUM_THREADS = 1
 export MKL_NUM_THREADS = 1
 
-.PHONY: run test lint clean
+.PHONY: run test bench lint clean
 
 run: $(STAMP)
-	$(BIN)/surefoot run config/planks.toml
+	$(BIN)/surefoot run $(CONFIG)
 
 test: $(STAMP)
 	$(BIN)/python -P -m pytest
+
+bench: $(STAMP)
+	$(BIN)/surefoot bench
 
 lint: $(STAMP)
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .
@@ -27,4 +31,5 @@ $(STAMP): pyproject.toml
 	touch $@
 
 clean:
-	rm -rf $(VENV) build *.egg-info .import/*.egg-info
+	rm -rf $(VENV) build log .pytest_cache .ruff_cache *.egg-info .import/*.egg-info
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -11,6 +11,9 @@ import numpy as np
 from surefoot.bus.errors import MessageError
 from surefoot.bus.message import FieldSpec, Message, specs
 
+_TYPE = "message"
+"""The field that says which message it is: unknown fields are ignored, missing ones blank; any map would do."""
+
 _LITTLE = {"float64": "<f8", "int64": "<i8", "bool": "?"}
 
 
@@ -32,7 +35,7 @@ def encode(message: Message, volatile: bool = True) -> bytes:
     Raises:
         MessageError: a field's shape or type is not the declared one.
     """
-    fields: dict[str, Any] = {}
+    fields: dict[str, Any] = {_TYPE: type(message).__name__}
     for name, spec, dtype in _plan(type(message)):
         if spec.volatile and not volatile:
             continue
@@ -63,7 +66,8 @@ def decode(cls: type[Message], data: bytes) -> Message:
     """The message in `data`; arrays are read-only views of it. Fields this version does not know are ignored.
 
     Raises:
-        MessageError: not msgpack, a wrong type or shape, or a number that is not finite, by field name.
+        MessageError: not msgpack, another message, a wrong type or shape, or a number that is not finite, by
+            field name.
     """
     try:
         fields = msgpack.unpackb(data)
@@ -71,6 +75,8 @@ def decode(cls: type[Message], data: bytes) -> Message:
         raise MessageError(f"{cls.__name__}: not msgpack ({error}); {len(data)} bytes dropped") from None
     if not isinstance(fields, dict):
         raise MessageError(f"{cls.__name__}: expected a map of fields, got {type(fields).__name__}")
+    if fields.get(_TYPE) != cls.__name__:
+        raise MessageError(f"{cls.__name__}: the field {_TYPE!r} says {fields.get(_TYPE)!r:.80}: another type")
     values = {}
     for name, spec, dtype in _plan(cls):
         if name in fields:

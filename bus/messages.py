@@ -270,6 +270,7 @@ class ProcessStatus(Message):
     pid: int = integer("of the operating system")
     steps: int = integer("steps since start")
     rate_hz: float = number("steps per second of the run's clock since the last status", "Hz", volatile=True)
+    nominal_hz: float = number("steps per second it is to make; 0 when it steps on events", "Hz")
     step_p50_ms: float = number("", "ms", volatile=True)
     step_p99_ms: float = number("", "ms", volatile=True)
     step_max_ms: float = number("", "ms", volatile=True)

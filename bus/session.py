@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import socket
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -16,7 +17,16 @@ import zenoh
 
 from surefoot.bus.errors import BusError
 
-_CONNECT_MS = 10_000
+_CONNECT_MS = 30_000
+_TX = {
+    "lease": 2000,
+    "keep_alive": 4,
+    # A stream to a reader that is late is dropped at once: to wait for it would hold up the others.
+    "queue": {
+        "size": {"data": 16, "real_time": 16},
+        "congestion_control": {"drop": {"wait_before_drop": 0}},
+    },
+}
 
 
 def socket_path(namespace: str) -> Path:
@@ -25,10 +35,7 @@ def socket_path(namespace: str) -> Path:
 
 
 class Session:
-    """Publishes and subscribes bytes under a namespace.
-
-    Publishing blocks when a queue is full, so that nothing is lost between processes of one machine.
-    """
+    """Publishes and subscribes bytes under a namespace."""
 
     def __init__(self, namespace: str, hub: bool = False, connect_ms: int = _CONNECT_MS):
         """Open the hub, or connect to it.
@@ -51,13 +58,19 @@ class Session:
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._kept: list[object] = []
 
-    def put(self, key: str, payload: bytes) -> None:
-        """Publish bytes on a key of the namespace."""
+    def put(self, key: str, payload: bytes, lossless: bool = True) -> None:
+        """Publish bytes on a key of the namespace.
+
+        Args:
+            key: what follows the namespace.
+            payload: the bytes.
+            lossless: block while a reader's queue is full. In real time a stream must not: one slow reader, a
+                display, would hold up the control chain. What the first message of a key asks, all get.
+        """
         publisher = self._publishers.get(key)
         if publisher is None:
-            publisher = self._session.declare_publisher(
-                f"{self._prefix}/{key}", congestion_control=zenoh.CongestionControl.BLOCK
-            )
+            control = zenoh.CongestionControl.BLOCK if lossless else zenoh.CongestionControl.DROP
+            publisher = self._session.declare_publisher(f"{self._prefix}/{key}", congestion_control=control)
             self._publishers[key] = publisher
         publisher.put(payload)
 
@@ -70,41 +83,80 @@ class Session:
 
         self._kept.append(self._session.declare_subscriber(f"{self._prefix}/{key}", on_sample))
 
+    def newest(self, key: str) -> Callable[[], bytes | None]:
+        """A function that gives the newest message since it was last called, or None.
+
+        Nothing runs between two calls, whatever the topic's rate: right for a display.
+        """
+        subscriber = self._session.declare_subscriber(f"{self._prefix}/{key}", zenoh.handlers.RingChannel(1))
+        self._kept.append(subscriber)
+
+        def take() -> bytes | None:
+            sample = subscriber.try_recv()
+            return None if sample is None else sample.payload.to_bytes()
+
+        return take
+
+    def serve(self, key: str, answer: Callable[[], list[bytes]]) -> None:
+        """Give `answer()` to everyone who asks for a key; it runs in the session's thread."""
+        whole = f"{self._prefix}/{key}"
+
+        def on_query(query: zenoh.Query) -> None:
+            with query:
+                for index, payload in enumerate(answer()):
+                    query.reply(f"{whole}/{index}", payload)
+
+        self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
+
+    def ask(self, key: str, timeout_s: float = 2.0) -> list[bytes]:
+        """What is served under a key, in order; empty when nobody serves it."""
+        replies = self._session.get(f"{self._prefix}/{key}/*", timeout=timeout_s)
+        answers = {}
+        for reply in replies:
+            if reply.ok is not None:
+                answers[int(str(reply.ok.key_expr).rsplit("/", 1)[1])] = reply.ok.payload.to_bytes()
+        return [answers[index] for index in sorted(answers)]
+
     def close(self) -> None:
         """Leave the bus."""
         self._session.close()
 
 
+def refuse_second_hub(namespace: str) -> None:
+    """See that no hub serves a namespace yet.
+
+    Raises:
+        BusError: one does; says which process.
+    """
+    path = socket_path(namespace)
+    with socket.socket(socket.AF_UNIX) as probe:
+        try:
+            probe.connect(str(path))
+        except OSError:
+            return  # no socket, or one left by a process that is gone
+    owner = _owner_file(path)
+    who = f"process {owner.read_text().strip()}" if owner.exists() else "a process"
+    raise BusError(f"{who} already serves namespace {namespace!r}: stop it, or set another run.namespace")
+
+
+def _owner_file(path: Path) -> Path:
+    return path.with_suffix(".pid")
+
+
 def _make_room(path: Path, namespace: str) -> None:
     """The socket's folder, closed to others; a socket file left by a process that is gone is removed."""
     path.parent.mkdir(mode=0o700, exist_ok=True)
-    lock = path.with_suffix(".pid")
-    if lock.exists():
-        owner = lock.read_text().strip()
-        if owner.isdigit() and int(owner) != os.getpid() and _alive(int(owner)):
-            raise BusError(
-                f"process {owner} already serves namespace {namespace!r}: stop it, or set another run.namespace"
-            )
+    refuse_second_hub(namespace)
     path.unlink(missing_ok=True)
     path.with_name(path.name + ".lock").unlink(missing_ok=True)
-    lock.write_text(str(os.getpid()))
-
-
-def _alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True
+    _owner_file(path).write_text(str(os.getpid()))
 
 
 def _config(endpoint: str, hub: bool, connect_ms: int) -> dict:
     config: dict = {
         "mode": "router" if hub else "client",
         "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
-        "transport": {"shared_memory": {"enabled": False}, "link": {"tx": {"lease": 2000, "keep_alive": 4}}},
+        "transport": {"shared_memory": {"enabled": False}, "link": {"tx": _TX}},
     }
     if hub:
         config["listen"] = {"endpoints": [endpoint]}

@@ -48,29 +48,37 @@ class Process:
     budget_s: float = 0.0
 
 
-PROCESSES = {
-    p.name: p
-    for p in (
+MPC_RATE_HZ = {"paper": 100.0, "light": 50.0}
+"""Of each profile of the MPC; a solve may take its whole period."""
+
+
+def processes(mpc_profile: str = "paper") -> dict[str, Process]:
+    """The process table, in the order in which processes released at the same instant step."""
+    mpc_hz = MPC_RATE_HZ[mpc_profile]
+    table = (
         Process("io", rate_hz=500.0),
         Process("estimator", trigger="hw/state", budget_s=0.001),
         Process("wbc", trigger="state/estimate", every=2, budget_s=0.001),
-        Process("mpc", rate_hz=100.0, budget_s=0.010),
+        Process("mpc", rate_hz=mpc_hz, budget_s=1.0 / mpc_hz),
         Process("fsm", rate_hz=250.0, budget_s=0.002),
         Process("trajopt", trigger="trajopt/request", budget_s=0.100),
         Process("elevation_map", trigger="foothold/request", budget_s=0.020),
     )
-}
-"""In the order in which processes released at the same instant step."""
+    return {process.name: process for process in table}
+
+
+PROCESSES = processes()
+"""The process table of the paper's profile; the names are the same in every profile."""
 
 TOPICS = {
     topic.key: topic
     for topic in (
-        Topic("hw/state", m.HardwareState, "io", 500.0, 0.010),
-        Topic("joint/command", m.JointCommand, "wbc", 250.0, 0.020),
-        Topic("state/estimate", m.StateEstimate, "estimator", 500.0, 0.010),
+        Topic("hw/state", m.HardwareState, "io", 500.0, 0.040),
+        Topic("joint/command", m.JointCommand, "wbc", 250.0, 0.040),
+        Topic("state/estimate", m.StateEstimate, "estimator", 500.0, 0.040),
         Topic("fsm/reference", m.MotionReference, "fsm", 250.0, 0.100),
         Topic("fsm/event", m.FsmEvent, "fsm"),
-        Topic("mpc/policy", m.Policy, "mpc", 100.0, 0.100),
+        Topic("mpc/policy", m.Policy, "mpc", MPC_RATE_HZ["paper"], 0.100),
         Topic("trajopt/request", m.PlanRequest, "fsm"),
         Topic("trajopt/plan", m.Plan, "trajopt"),
         Topic("foothold/request", m.FootholdRequest, "fsm"),
@@ -80,6 +88,11 @@ TOPICS = {
         *(Topic(f"status/{name}", m.ProcessStatus, name, 2.0, 2.0) for name in PROCESSES),
     )
 }
+
+
+def nominal_hz(process: Process) -> float:
+    """Steps a second that a process is to make; 0 when it steps on events."""
+    return process.rate_hz or TOPICS[process.trigger].rate_hz / process.every
 
 
 def topic(key: str) -> Topic:

@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 import gc
-import os
 import queue
-import signal
 import time
 from threading import Event, Lock
 
-from surefoot.bus.codec import check, encode
-from surefoot.bus.message import Message
-from surefoot.bus.messages import OperatorCommand
 from surefoot.bus.session import Session
-from surefoot.bus.topics import PROCESSES
+from surefoot.bus.topics import PROCESSES, processes
 from surefoot.components import clock_messages as clock
-from surefoot.components.component import Inbox, Life, Outbox
-from surefoot.components.health import Health
+from surefoot.components.component import Life
+from surefoot.components.operator_desk import OperatorDesk
+from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
 from surefoot.components.scheduler import NS, Scheduler
-from surefoot.components.topic_buffer import TopicBuffers
+from surefoot.components.stepper import Stepper
 from surefoot.config.deployment import Deployment
 
 _LOOK_S = 0.2
-_INPUT_TIMEOUT_S = 10.0
+_WORTH_SAYING_S = 0.5
+_FOR_EVER_NS = 10**18
 
 
 class MasterStopped(Exception):
@@ -37,44 +34,38 @@ class ClockMaster:
     process slows time and changes nothing else.
     """
 
-    def __init__(self, deployment: Deployment, until_s: float = float("inf")):
-        self._until_s = until_s
+    def __init__(self, deployment: Deployment, boot: int = 0, parent: int = 0):
+        self._end = ProcessEnd(parent)
         self.session = Session(deployment.run.namespace, hub=True)
-        self._stop = Event()
-        self._parent = os.getppid()
-        self._commands: queue.Queue[str] = queue.Queue()
-        self._sent = 0
-        self.session.subscribe(
-            clock.REQUEST, lambda key, payload: self._commands.put(payload.decode(errors="replace"))
-        )
-        component = component_class("io")(deployment)
-        self._health = Health(component, self.session)
-        remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
-        self._io = _HostedExecutor(component, self.session, self._health)
-        self.scheduler = Scheduler({"io": self._io, **remote})
-        self._remote = remote
-        for number in (signal.SIGTERM, signal.SIGINT):
-            signal.signal(number, lambda *_: self._stop.set())
+        self._desk = OperatorDesk(self.session)
+        table = processes(deployment.mpc.profile)
+        self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)
+        self._remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
+        executors = {"io": _HostedExecutor(self._stepper), **self._remote}
+        self.scheduler = Scheduler(executors, table)
 
     def run(self) -> int:
-        """Until told to stop, the parent is gone, or `until_s` of simulated time."""
+        """Until told to stop or the parent is gone; returns the exit code."""
+        self._stepper.connect()
         gc.collect()
         gc.freeze()
-        self._health.life = Life.RUN
+        self._stepper.health.life = Life.IDLE
         try:
-            self._health.reason = "waiting for the other processes to come up"
             for executor in self._remote.values():
                 executor.wait_ready()
-            self._health.reason = ""
+            self.waiting("")
             self._between()  # a command given before the start is there at t = 0
-            end = round(min(self._until_s, 1e9) * NS)
-            self.scheduler.run_until(end, self._between)
+            self.scheduler.run_until(_FOR_EVER_NS, self._between)
         except MasterStopped:
             pass
-        for name in self._remote:
-            self.session.put(f"{clock.RELEASE}/{name}", clock.pack_release(clock.STOP_NS, {}, {}))
-        time.sleep(0.1)
-        self.session.close()
+        except Exception as error:
+            self._stepper.fail(error)
+            raise
+        finally:
+            for name in self._remote:
+                self.session.put(f"{clock.RELEASE}/{name}", clock.pack_release(clock.STOP_NS, {}))
+            time.sleep(0.1)  # let it leave before the session closes
+            self.session.close()
         return 0
 
     def look(self) -> None:
@@ -83,36 +74,35 @@ class ClockMaster:
         Raises:
             MasterStopped: there is no reason to wait on.
         """
-        if self._stop.is_set() or os.getppid() != self._parent:
+        if self._end.due:
             raise MasterStopped
-        self._health.tell(self.scheduler.t_ns / NS, self._io.inbox, self._io.bad)
+        self._stepper.tell(self.scheduler.t_ns / NS)
 
     def waiting(self, reason: str) -> None:
         """Say in words why time stands still."""
-        self._health.reason = reason
+        self._stepper.health.reason = reason
 
     def _between(self) -> bool:
         """Between two instants: pass on commands, tell the status; true to end."""
-        while not self._commands.empty():
-            self._command(self._commands.get())
-        self._health.tell(self.scheduler.t_ns / NS, self._io.inbox, self._io.bad)
-        return self._stop.is_set() or os.getppid() != self._parent
-
-    def _command(self, command: str) -> None:
-        message = OperatorCommand(t=self.scheduler.t_ns / NS, seq=self._sent, valid=True, command=command)
-        self._sent += 1
-        self.session.put("operator/command", encode(message))
-        self.scheduler.inject("operator/command")
+        t = self.scheduler.t_ns / NS
+        if count := self._desk.publish(t):
+            self.scheduler.inject("operator/command", count)
+        self._stepper.tell(t)
+        return self._end.due
 
 
 class RemoteExecutor:
-    """A component in another process, released and awaited over the bus."""
+    """A component in another process, released and awaited over the bus.
+
+    It keeps where that process stands after each step, and hands it to the one that takes its place.
+    """
 
     def __init__(self, name: str, master: ClockMaster):
         self._name, self._master = name, master
         self._pending: tuple[int, dict[str, int]] | None = None
-        self._before: dict[str, int] = {}
-        self._done: queue.Queue[bytes] = queue.Queue()
+        self._resume = clock.Resume({}, b"")
+        self._new_there = False
+        self._done: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self._ready = Event()
         self._lock = Lock()
         master.session.subscribe(f"{clock.DONE}/{name}", lambda key, payload: self._done.put(payload))
@@ -127,68 +117,54 @@ class RemoteExecutor:
     def release(self, t_ns: int, visible: dict[str, int]) -> None:
         with self._lock:
             self._pending = (t_ns, dict(visible))
-            before = self._before
-        payload = clock.pack_release(t_ns, visible, before)
-        self._master.session.put(f"{clock.RELEASE}/{self._name}", payload)
+            self._send()
 
     def collect(self) -> dict[str, int]:
         begun = time.monotonic()
-        late = False
+        said = False
         while True:
             try:
-                t_ns, counts, _ = clock.unpack_done(self._done.get(timeout=_LOOK_S))
+                done = clock.unpack_done(self._done.get(timeout=_LOOK_S))
             except queue.Empty:
-                late = True
                 waited = time.monotonic() - begun
-                self._master.waiting(f"simulated time waits for {self._name}, {waited:.1f} s now")
+                if waited > _WORTH_SAYING_S:
+                    said = True
+                    self._master.waiting(f"simulated time waits for {self._name}, {waited:.1f} s now")
                 self._master.look()
                 continue
-            if self._pending is not None and t_ns == self._pending[0]:
-                with self._lock:
-                    self._pending = None
-                if late:
-                    self._master.waiting("")
-                return counts
+            if done.t_ns == self._pending[0]:
+                break
+        with self._lock:
+            self._resume = clock.Resume(self._pending[1], done.snapshot)
+            self._pending = None
+        if said:
+            self._master.waiting("")
+        return done.counts
 
     def _on_hello(self) -> None:
         """The process is up, or up again: what it has not answered is asked once more."""
-        self._ready.set()
         with self._lock:
-            pending = self._pending
-            self._before = before = dict(self._master.scheduler.visible) if pending is None else pending[1]
-        if pending is not None:
-            payload = clock.pack_release(pending[0], pending[1], before)
-            self._master.session.put(f"{clock.RELEASE}/{self._name}", payload)
+            self._new_there = True
+            if self._pending is not None:
+                self._send()
+        self._ready.set()
+
+    def _send(self) -> None:
+        t_ns, visible = self._pending
+        payload = clock.pack_release(t_ns, visible, self._resume if self._new_there else None)
+        self._new_there = False
+        self._master.session.put(f"{clock.RELEASE}/{self._name}", payload)
 
 
 class _HostedExecutor:
     """io itself, in the master's process, on the same terms as the others."""
 
-    def __init__(self, component, session: Session, health: Health):
-        self._component, self._session, self._health = component, session, health
-        self.inbox = Inbox(component.inputs)
-        self._buffers = TopicBuffers(component.inputs)
-        self._outgoing: list[tuple[str, Message]] = []
-        self._outbox = Outbox(component.outputs, lambda key, message: self._outgoing.append((key, check(message))))
-        for key in component.inputs:
-            session.subscribe(key, self._buffers.put)
-
-    @property
-    def bad(self) -> int:
-        """Malformed messages so far."""
-        return self._buffers.bad
+    def __init__(self, stepper: Stepper):
+        self._stepper = stepper
 
     def release(self, t_ns: int, visible: dict[str, int]) -> None:
-        begun = time.perf_counter()
-        self._buffers.deliver_visible(visible, self.inbox, _INPUT_TIMEOUT_S)
-        self._component.step(t_ns / NS, self.inbox, self._outbox)
-        self.inbox.clear_new()
-        self._health.stepped(1e3 * (time.perf_counter() - begun))
+        self._stepper.read_visible(visible)
+        self._stepper.step(t_ns / NS)
 
     def collect(self) -> dict[str, int]:
-        counts: dict[str, int] = {}
-        for key, message in self._outgoing:
-            self._session.put(key, encode(message))
-            counts[key] = counts.get(key, 0) + 1
-        self._outgoing.clear()
-        return counts
+        return self._stepper.publish()

@@ -2,39 +2,92 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import msgpack
+import numpy as np
 
 RELEASE, DONE, HELLO = "clock/release", "clock/done", "clock/hello"
 """Key prefixes; the process's name follows. HELLO: the process is ready, or ready again after a restart."""
 
+KEPT = "kept"
+"""Key prefix; a topic's key follows. Its writer answers with the last messages of that topic."""
+
 REQUEST = "operator/request"
-"""Key on which people's commands reach the clock's master, which dates and numbers them."""
+"""Key on which people's commands reach the process of io, which dates and numbers them."""
 
 STOP_NS = -1
-"""Release time that means: deactivate and end."""
+"""Release time that means: end."""
 
 
-def pack_release(t_ns: int, visible: dict[str, int], before: dict[str, int]) -> bytes:
-    """A release at t_ns.
+@dataclass(frozen=True)
+class Resume:
+    """Where a process that was not there takes up.
 
-    Args:
-        t_ns: its time.
-        visible: how many messages of every topic are visible.
-        before: how many were visible when the process said hello; it may have missed those.
+    Attributes:
+        had: how many messages of each topic its predecessor had read at its last finished step.
+        snapshot: of its predecessor after that step; empty if there was none, or it keeps none.
     """
-    return msgpack.packb([t_ns, visible, before])
+
+    had: dict[str, int]
+    snapshot: bytes
 
 
-def unpack_release(payload: bytes) -> tuple[int, dict[str, int], dict[str, int]]:
-    t_ns, visible, before = msgpack.unpackb(payload)
-    return t_ns, visible, before
+@dataclass(frozen=True)
+class Done:
+    """A step is over.
+
+    Attributes:
+        t_ns: the release it answers [ns].
+        counts: how many messages it published on each topic.
+        snapshot: the component's state after it, packed; empty if it keeps none.
+    """
+
+    t_ns: int
+    counts: dict[str, int]
+    snapshot: bytes
 
 
-def pack_done(t_ns: int, counts: dict[str, int], step_ms: float) -> bytes:
-    """The step of the release at t_ns is over, with how many messages on each topic."""
-    return msgpack.packb([t_ns, counts, step_ms])
+def pack_release(t_ns: int, visible: dict[str, int], resume: Resume | None = None) -> bytes:
+    """A release at `t_ns` with how many messages of every topic are visible; `resume` after a HELLO."""
+    return msgpack.packb([t_ns, visible, resume and [resume.had, resume.snapshot]])
 
 
-def unpack_done(payload: bytes) -> tuple[int, dict[str, int], float]:
-    t_ns, counts, step_ms = msgpack.unpackb(payload)
-    return t_ns, counts, step_ms
+def unpack_release(payload: bytes) -> tuple[int, dict[str, int], Resume | None]:
+    """What `pack_release` packed."""
+    t_ns, visible, resume = msgpack.unpackb(payload)
+    return t_ns, visible, resume and Resume(*resume)
+
+
+def pack_done(done: Done) -> bytes:
+    """Bytes of a done token."""
+    return msgpack.packb([done.t_ns, done.counts, done.snapshot])
+
+
+def unpack_done(payload: bytes) -> Done:
+    """What `pack_done` packed."""
+    return Done(*msgpack.unpackb(payload))
+
+
+def pack_snapshot(state: dict[str, Any]) -> bytes:
+    """Bytes of a component's snapshot: numbers, strings, lists and arrays by name; empty for an empty one."""
+    return msgpack.packb(state, default=_pack_array) if state else b""
+
+
+def unpack_snapshot(payload: bytes) -> dict[str, Any]:
+    """What `pack_snapshot` packed; arrays may be written to."""
+    return msgpack.unpackb(payload, ext_hook=_unpack_array)
+
+
+def _pack_array(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return msgpack.ExtType(0, msgpack.packb([value.dtype.str, value.shape, value.tobytes()]))
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"a snapshot holds numbers, strings, lists and arrays, not {type(value).__name__}")
+
+
+def _unpack_array(code: int, payload: bytes) -> np.ndarray:
+    dtype, shape, raw = msgpack.unpackb(payload)
+    return np.frombuffer(raw, dtype).reshape(shape).copy()

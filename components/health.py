@@ -11,7 +11,9 @@ import numpy as np
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import ProcessStatus
 from surefoot.bus.session import Session
+from surefoot.bus.topics import Process, nominal_hz
 from surefoot.components.component import Component, Inbox, Life
+from surefoot.components.topic_buffer import TopicBuffers
 
 _PERIOD_S = 0.5
 
@@ -21,15 +23,21 @@ class Health:
 
     Attributes:
         life, reason: what the process is doing, and in words why nothing moves.
+        lost: an input that did not arrive; empty when all did.
         overruns: deadlines missed.
+        t: run's time of the last status [s].
     """
 
-    def __init__(self, component: Component, session: Session):
-        self.life, self.reason = Life.INIT, ""
+    def __init__(
+        self, component: Component, session: Session, buffers: TopicBuffers, process: Process, boot: int = 0
+    ):
+        self.life, self.reason, self.lost = Life.INIT, "", ""
         self.overruns = self.steps = 0
-        self._component, self._session = component, session
+        self.t = 0.0
+        self._component, self._session, self._buffers, self._boot = component, session, buffers, boot
+        self._nominal_hz = nominal_hz(process)
         self._recent: deque[float] = deque(maxlen=2000)
-        self._told, self._told_t, self._told_steps = time.monotonic(), 0.0, 0
+        self._told, self._told_steps = time.monotonic(), 0
         self._seq = 0
 
     def stepped(self, step_ms: float) -> None:
@@ -37,14 +45,14 @@ class Health:
         self.steps += 1
         self._recent.append(step_ms)
 
-    def tell(self, t: float, inbox: Inbox, bad: int, now: bool = False) -> None:
+    def tell(self, t: float, inbox: Inbox, now: bool = False) -> None:
         """Publish the status if half a second has passed, or `now`."""
         clock = time.monotonic()
         if not now and clock - self._told < _PERIOD_S:
             return
-        passed = t - self._told_t
+        passed = t - self.t
         rate = (self.steps - self._told_steps) / passed if passed > 0.0 else 0.0
-        self._told, self._told_t, self._told_steps = clock, t, self.steps
+        self._told, self.t, self._told_steps = clock, t, self.steps
         keys = self._component.inputs
         ages = [-1.0 if (message := inbox.latest(key)) is None else t - message.t for key in keys]
         recent = np.array(self._recent) if self._recent else np.zeros(1)
@@ -52,19 +60,26 @@ class Health:
             t=t,
             valid=True,
             seq=self._seq,
+            boot=self._boot,
             process=self._component.name,
             life=self.life.value,
-            reason=self.reason,
+            reason=self._words(),
             pid=os.getpid(),
             steps=self.steps,
             rate_hz=rate,
+            nominal_hz=self._nominal_hz,
             step_p50_ms=float(np.percentile(recent, 50)),
             step_p99_ms=float(np.percentile(recent, 99)),
             step_max_ms=float(recent.max()),
             overruns=self.overruns,
-            bad_messages=bad,
+            bad_messages=self._buffers.bad,
             input=keys,
             input_age_s=np.array(ages),
         )
         self._seq += 1
-        self._session.put(f"status/{self._component.name}", encode(status))
+        self._session.put(f"status/{self._component.name}", encode(status), lossless=False)
+
+    def _words(self) -> str:
+        """All there is to say, the gravest first."""
+        bad = f"dropped {self._buffers.last_error}" if self._buffers.bad else ""
+        return "; ".join(words for words in (self.reason, self.lost, bad) if words)

@@ -8,7 +8,7 @@ from time import perf_counter
 from surefoot.bus.codec import check
 from surefoot.bus.message import Message
 from surefoot.bus.messages import OperatorCommand
-from surefoot.bus.topics import PROCESSES
+from surefoot.bus.topics import PROCESSES, processes
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.registry import component_class
 from surefoot.components.scheduler import NS, Scheduler
@@ -93,7 +93,7 @@ class Lockstep:
         parts = {part.name: part for part in given}
         self.components = {name: parts.get(name) or component_class(name)(deployment) for name in names}
         self.executors = {name: LocalExecutor(part, self.bus) for name, part in self.components.items()}
-        self.scheduler = Scheduler(self.executors)
+        self.scheduler = Scheduler(self.executors, processes(deployment.mpc.profile))
         self._commands = 0
         for component in self.components.values():
             component.warm_up()

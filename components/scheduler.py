@@ -43,9 +43,10 @@ class Scheduler:
         visible: for each topic, how many messages have become visible so far.
     """
 
-    def __init__(self, executors: dict[str, Executor]):
+    def __init__(self, executors: dict[str, Executor], table: dict[str, Process] = PROCESSES):
+        """`table` says when each process is released; of it, those that have an executor take part."""
         self._executors = executors
-        self._processes: dict[str, Process] = {name: PROCESSES[name] for name in PROCESSES if name in executors}
+        self._processes = {name: process for name, process in table.items() if name in executors}
         self._order = {name: index for index, name in enumerate(PROCESSES)}
         self._triggers: dict[str, list[Process]] = {}
         for process in self._processes.values():

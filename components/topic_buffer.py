@@ -1,56 +1,138 @@
-"""What has arrived of one topic from another process, in the writer's order."""
+"""What has arrived of a process's inputs from other processes, in the writers' order."""
 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from threading import Condition
 
 from surefoot.bus.codec import decode
 from surefoot.bus.errors import MessageError
 from surefoot.bus.message import Message
+from surefoot.bus.session import Session
 from surefoot.bus.topics import TOPICS
 from surefoot.components.component import Inbox
 
-_KEPT = 4096
+KEPT = 32
+"""Messages of a topic that its writer keeps for a reader that comes late, or again."""
+
+_WINDOW = 256  # bytes wait for a reader at the most; a number further ahead than this is not the writer's
+_MISFITS = 8  # so many messages out of sequence in a row are a new sequence
+
+
+class _Topic:
+    """One input: bytes not yet decoded, messages not yet visible, and where the writer's sequence stands."""
+
+    def __init__(self, key: str):
+        self.kind = TOPICS[key].message
+        self.waiting: deque[bytes] = deque(maxlen=_WINDOW)
+        self.early: dict[int, tuple[Message, int]] = {}
+        self.had: dict[int, int] = {}
+        self.arrivals = self.first = self.next = self.misfits = 0
+        self.boot = -1
+
+    def jump(self, seq: int) -> None:
+        """Read on from a sequence number; what lies before it is of no interest."""
+        self.first = self.next = seq
+        for old in [each for each in self.early if each < seq]:
+            del self.early[old]
 
 
 class TopicBuffers:
     """Bytes in from the bus's thread, messages out to the step; a bad message is counted and dropped.
 
+    With simulated time every message has its place, by its sequence number: what comes twice or out of place
+    is another publisher's. On the monotonic clock the newest counts: of a stream that does not release the
+    reader nothing else is even looked at, and what falls behind is dropped.
+
     Attributes:
-        bad: messages dropped because they were malformed.
-        last_error: what was wrong with the latest of them.
+        bad: messages dropped: malformed, or not of the topic's writer.
+        last_error: what was wrong with the latest of them, by topic.
     """
 
-    def __init__(self, keys: tuple[str, ...]):
-        self.arrived = Condition()
+    def __init__(self, keys: tuple[str, ...], trigger: str | None = None):
+        """For the topics `keys`.
+
+        Args:
+            keys: the topics read.
+            trigger: None with simulated time; on the monotonic clock the topic whose messages release the
+                reader, or "".
+        """
         self.bad = 0
         self.last_error = ""
-        self._waiting: dict[str, deque[bytes]] = {key: deque(maxlen=_KEPT) for key in keys}
-        self._ready: dict[str, deque[Message]] = {key: deque(maxlen=_KEPT) for key in keys}
-        self._next = dict.fromkeys(keys, 0)
+        self._arrived = Condition()
+        self._topics = {key: _Topic(key) for key in keys}
+        self._trigger = trigger
+        self._newest: dict[str, Callable[[], bytes | None]] = {}
+
+    def connect(self, session: Session) -> None:
+        """Begin to listen."""
+        for key in self._topics:
+            if self._trigger in (None, key) or not TOPICS[key].rate_hz:
+                session.subscribe(key, self.put)
+            else:
+                self._newest[key] = session.newest(key)
 
     def put(self, key: str, payload: bytes) -> None:
         """Store one message (the bus's thread)."""
-        with self.arrived:
-            self._waiting[key].append(payload)
-            self.arrived.notify_all()
+        with self._arrived:
+            topic = self._topics[key]
+            topic.waiting.append(payload)
+            topic.arrivals += 1
+            if self._trigger in (None, key):
+                self._arrived.notify_all()
 
-    def start_after(self, counts: dict[str, int]) -> None:
-        """Do not wait for the first messages of each topic: they were published before this reader was there."""
-        for key in self._next:
-            self._next[key] = counts.get(key, 0)
+    # Monotonic clock ------------------------------------------------------------------------------------
 
-    def deliver_all(self, inbox: Inbox) -> int:
-        """Hand over everything that has arrived; how many messages that were."""
-        count = 0
-        for key in self._waiting:
-            self._decode(key)
-            ready = self._ready[key]
-            while ready:
-                inbox.deliver(key, ready.popleft())
-                count += 1
-        return count
+    def wait_arrivals(self, key: str, count: int, timeout_s: float) -> int:
+        """Wait until `count` messages of a topic have arrived in all, or the time is up; how many have."""
+        topic = self._topics[key]
+        with self._arrived:
+            self._arrived.wait_for(lambda: topic.arrivals >= count, timeout_s)
+            return topic.arrivals
+
+    def deliver_all(self, inbox: Inbox) -> None:
+        """Hand over everything that has arrived."""
+        for key, topic in self._topics.items():
+            if key in self._newest and (payload := self._newest[key]()) is not None:
+                topic.waiting.append(payload)
+            while topic.waiting:
+                message = self._decode(key, topic.waiting.popleft())
+                if message is not None and self._in_sequence(key, topic, message):
+                    inbox.deliver(key, message)
+
+    def _in_sequence(self, key: str, topic: _Topic, message: Message) -> bool:
+        """Whether a message follows the last one; a restarted writer, or a long row of misfits, begins anew."""
+        ahead = message.seq - topic.next
+        follows = message.boot > topic.boot or (message.boot == topic.boot and ahead >= 0)
+        if follows or topic.misfits >= _MISFITS:
+            topic.boot, topic.next, topic.misfits = message.boot, message.seq + 1, 0
+            return True
+        topic.misfits += 1
+        self._drop(f"{key}: message {message.seq} is out of place, next is {topic.next}: a second publisher?")
+        return False
+
+    # Simulated time -------------------------------------------------------------------------------------
+
+    def resume(self, had: dict[str, int], visible: dict[str, int], kept: dict[str, list[bytes]], inbox: Inbox):
+        """Take the place of a reader that is gone.
+
+        Args:
+            had: how many messages of each topic it had read.
+            visible: how many are visible now.
+            kept: what the writers still have of each topic.
+            inbox: gets the last message that reader had of each topic, not as a new one.
+        """
+        for key, topic in self._topics.items():
+            seen = had.get(key, 0)
+            for payload in kept.get(key, ()):
+                message = self._decode(key, payload)
+                if message is not None and message.seq >= seen - 1:
+                    topic.early[message.seq] = message, hash(payload)
+            oldest = min(topic.early, default=visible.get(key, 0))
+            topic.jump(max(seen - 1, min(oldest, visible.get(key, 0)), 0))
+            self._take(key, topic, seen, inbox)
+        inbox.clear_new()
 
     def deliver_visible(self, visible: dict[str, int], inbox: Inbox, timeout_s: float) -> str:
         """Hand over exactly the messages with sequence numbers below the counts in `visible`.
@@ -61,33 +143,57 @@ class TopicBuffers:
             What did not come in time, in words; empty when all is there.
         """
         lost = ""
-        for key in self._waiting:
+        for key, topic in self._topics.items():
             wanted = visible.get(key, 0)
-            while self._next[key] < wanted:
-                if not self._take(key, wanted, inbox) and not self._wait(key, timeout_s):
-                    lost = f"{key}: message {self._next[key]} of {wanted} did not arrive in {timeout_s:g} s"
-                    self._next[key] = wanted
+            if wanted - topic.next > KEPT:
+                topic.jump(wanted - KEPT)  # a reader that is released seldom needs the last ones only
+            self._sort(key, topic)
+            self._take(key, topic, wanted, inbox)
+            while topic.next < wanted:
+                if not self._wait(topic, timeout_s):
+                    lost = f"{key}: message {topic.next} of {wanted} did not arrive in {timeout_s:g} s"
+                    topic.jump(min([wanted, *topic.early]))
+                self._sort(key, topic)
+                self._take(key, topic, wanted, inbox)
         return lost
 
-    def _take(self, key: str, wanted: int, inbox: Inbox) -> bool:
-        """Hand over what is here up to the count; true when there was any."""
-        self._decode(key)
-        ready, before = self._ready[key], self._next[key]
-        while ready and ready[0].seq < wanted:
-            message = ready.popleft()
+    def _take(self, key: str, topic: _Topic, wanted: int, inbox: Inbox) -> None:
+        """Hand over, in order and without a gap, what is here up to the count."""
+        while topic.next < wanted and topic.next in topic.early:
+            message, topic.had[topic.next] = topic.early.pop(topic.next)
+            topic.had.pop(topic.next - KEPT, None)
+            topic.next += 1
             inbox.deliver(key, message)
-            self._next[key] = message.seq + 1
-        return self._next[key] != before
 
-    def _wait(self, key: str, timeout_s: float) -> bool:
-        with self.arrived:
-            return self.arrived.wait_for(lambda: bool(self._waiting[key]), timeout_s)
+    def _wait(self, topic: _Topic, timeout_s: float) -> bool:
+        with self._arrived:
+            return self._arrived.wait_for(lambda: bool(topic.waiting), timeout_s)
 
-    def _decode(self, key: str) -> None:
-        waiting, kind = self._waiting[key], TOPICS[key].message
-        while waiting:
-            try:
-                self._ready[key].append(decode(kind, waiting.popleft()))
-            except MessageError as error:
-                self.bad += 1
-                self.last_error = f"{key}: {error}"
+    def _sort(self, key: str, topic: _Topic) -> None:
+        """Decode what has arrived and put each message in its place, if that is free."""
+        while topic.waiting:
+            payload = topic.waiting.popleft()
+            message = self._decode(key, payload)
+            if message is None:
+                continue
+            seq, mark = message.seq, hash(payload)
+            there = topic.early.get(seq)
+            if seq < topic.first:
+                continue
+            if there is None and topic.next <= seq < topic.next + _WINDOW:
+                topic.early[seq] = message, mark
+            elif there is not None and message.boot > there[0].boot:
+                topic.early[seq] = message, mark  # the writer was restarted before its step was over
+            elif mark not in (topic.had.get(seq), there and there[1]):
+                self._drop(f"{key}: message {seq} is out of place, next is {topic.next}: a second publisher?")
+
+    def _decode(self, key: str, payload: bytes) -> Message | None:
+        try:
+            return decode(self._topics[key].kind, payload)
+        except MessageError as error:
+            self._drop(f"{key}: {error}")
+            return None
+
+    def _drop(self, why: str) -> None:
+        self.bad += 1
+        self.last_error = why

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from surefoot.config.estimator import Estimator
 from surefoot.config.fsm import Fsm
@@ -15,7 +16,7 @@ from surefoot.config.ocp import Ocp
 from surefoot.config.robot import Robot, load_robot
 from surefoot.config.terrain import Terrain
 from surefoot.config.trajopt import Trajopt
-from surefoot.config.typed_toml import build, read_toml, with_override
+from surefoot.config.typed_toml import ConfigError, Within, build, read_toml, with_override
 from surefoot.config.wbc import Wbc
 
 
@@ -28,6 +29,12 @@ class Run:
     namespace: str = "surefoot"  # prefix of every key on the wire
     epoch_s: float = 0.0  # monotonic clock at t = 0; the supervisor sets it for all processes of a run
     log_dir: str = "log"  # where process logs go, relative to the working directory
+    solve_share_max: Annotated[float, Within(0.05, 1.0)] = 0.6  # of 10 ms; slower machines run mpc.profile light
+    cores_min: Annotated[int, Within(1, 256)] = 4  # likewise with fewer cores: seven processes share them
+
+    def __post_init__(self) -> None:
+        if not re.fullmatch(r"[A-Za-z0-9_-]+", self.namespace):
+            raise ConfigError(f"namespace = {self.namespace!r}: letters, digits, - and _ only")
 
 
 @dataclass(frozen=True)
@@ -63,4 +70,7 @@ def load_deployment(path: Path | str, overrides: Sequence[str] = ()) -> Deployme
     table = read_toml(Path(path))
     for assignment in overrides:
         table = with_override(table, assignment)
-    return build(Deployment, table)
+    try:
+        return build(Deployment, table)
+    except ConfigError as error:
+        raise ConfigError(f"{path}: {error}") from None

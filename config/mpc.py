@@ -3,12 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from surefoot.config.typed_toml import Within
+
+_PROFILES = {"paper": (67, 0.015, 0.015), "light": (40, 0.025, 0.025)}
+"""Intervals, interval [s] and lead [s] of each profile; the rate of each is in the topic table."""
 
 
 @dataclass(frozen=True)
 class Mpc:
-    """Horizon of 1.0 s at 0.015 s (Sec. III-A); the rate is in the topic table."""
+    """Horizon of 1.0 s: 67 intervals of 15 ms at 100 Hz (Sec. III-A), or 40 of 25 ms at 50 Hz.
 
-    intervals: int = 67
-    interval_s: float = 0.015
-    lead_s: float = 0.015  # the plan begins this far ahead: budget of the solve and way of a command to the motors
+    The light profile is for machines that cannot solve the paper's in real time. A figure left at 0 is the
+    profile's.
+
+    Attributes:
+        lead_s: the plan begins this far ahead: budget of the solve and way of a command to the motors.
+    """
+
+    profile: Literal["paper", "light"] = "paper"
+    intervals: Annotated[int, Within(0, 200)] = 0
+    interval_s: Annotated[float, Within(0.0, 0.1)] = 0.0
+    lead_s: Annotated[float, Within(0.0, 0.1)] = 0.0
+
+    def __post_init__(self) -> None:
+        for name, figure in zip(("intervals", "interval_s", "lead_s"), _PROFILES[self.profile], strict=True):
+            if not getattr(self, name):
+                object.__setattr__(self, name, figure)

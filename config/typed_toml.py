@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
+import math
 import tomllib
 import types
 import typing
@@ -12,6 +14,14 @@ from typing import Any
 
 class ConfigError(ValueError):
     """A configuration that cannot be used; says which key, its value and what would be right."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Within:
+    """Limits of a number, both allowed: `gain: Annotated[float, Within(0.0, 500.0)]`."""
+
+    least: float = -math.inf
+    most: float = math.inf
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -25,6 +35,10 @@ def read_toml(path: Path) -> dict[str, Any]:
             return tomllib.load(file)
     except FileNotFoundError:
         raise ConfigError(f"no such file: {path}; give the path of a TOML file") from None
+    except IsADirectoryError:
+        raise ConfigError(f"{path} is a folder; give the path of a TOML file") from None
+    except UnicodeDecodeError as error:
+        raise ConfigError(f"{path} is not a text file: {error}") from None
     except tomllib.TOMLDecodeError as error:
         raise ConfigError(f"{path} is not valid TOML: {error}") from None
 
@@ -38,16 +52,18 @@ def build(cls: type, table: Any, path: str = "") -> Any:
         path: dotted path of the table, for messages.
 
     Raises:
-        ConfigError: unknown key, missing key or wrong type, named by its dotted path.
+        ConfigError: unknown key, missing key, wrong type or out of limits, named by its dotted path.
     """
     where = path or "the top level"
     if not isinstance(table, dict):
         raise ConfigError(f"{where}: expected a table, got {table!r}")
-    hints = typing.get_type_hints(cls)
+    hints = typing.get_type_hints(cls, include_extras=True)
     fields = {field.name: field for field in dataclasses.fields(cls) if field.init}
     for key in table:
         if key not in fields:
-            raise ConfigError(f"{_join(path, key)}: unknown key; {where} has {', '.join(sorted(fields))}")
+            near = difflib.get_close_matches(key, fields, 1)
+            guess = f"did you mean {_join(path, near[0])}? " if near else ""
+            raise ConfigError(f"{_join(path, key)}: unknown key; {guess}{where} has {', '.join(sorted(fields))}")
     values = {}
     for name, field in fields.items():
         if name in table:
@@ -73,7 +89,10 @@ def with_override(table: dict[str, Any], assignment: str) -> dict[str, Any]:
     result = dict(table)
     inner = result
     for key in keys[:-1]:
-        inner[key] = dict(inner.get(key, {}))
+        table_there = inner.get(key, {})
+        if not isinstance(table_there, dict):
+            raise ConfigError(f"--set {assignment!r}: {key} is {table_there!r}, not a section")
+        inner[key] = dict(table_there)
         inner = inner[key]
     inner[keys[-1]] = value
     return result
@@ -96,6 +115,8 @@ def _join(path: str, key: str) -> str:
 
 def _convert(hint: Any, value: Any, path: str) -> Any:
     origin, args = typing.get_origin(hint), typing.get_args(hint)
+    if origin is typing.Annotated:
+        return _limited(_convert(args[0], value, path), args[1], path)
     if origin in (typing.Union, types.UnionType):
         return _convert(next(arg for arg in args if arg is not type(None)), value, path)
     if origin is typing.Literal:
@@ -114,6 +135,14 @@ def _convert(hint: Any, value: Any, path: str) -> Any:
         return float(value)
     if not isinstance(value, hint) or (hint is not bool and isinstance(value, bool)):
         raise ConfigError(f"{path} = {value!r}: expected {hint.__name__}")
+    if hint is float and not math.isfinite(value):
+        raise ConfigError(f"{path} = {value}: expected a finite number")
+    return value
+
+
+def _limited(value: Any, limits: Within, path: str) -> Any:
+    if not limits.least <= value <= limits.most:
+        raise ConfigError(f"{path} = {value!r}: out of range, allowed {limits.least:g} to {limits.most:g}")
     return value
 
 

@@ -14,6 +14,23 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 from surefoot.bus.errors import BusError  # noqa: E402
 from surefoot.config.typed_toml import ConfigError  # noqa: E402
 
+_LISTEN_S = 1.5
+
+_RUN = """\
+Start every process of a deployment and show how it goes, on one screen.
+
+The run ends when the platform is crossed, when the robot has fallen or been damped, after --for seconds of
+its time, or with Ctrl-C; then every process is ended in order. A robot that finds no safe foothold goes back to
+its last one and stands: on a terminal the run goes on and waits for `surefoot command backward` (or left,
+right, forward, stop) from another one; with --plain, or without a terminal, that ends the run.
+
+With the simulated clock time waits for every process: the run may be slower than real time, and
+`surefoot restart NAME` changes nothing else. With --set run.clock=monotonic it keeps real time; a machine that
+cannot solve the MPC fast enough says so and runs its light profile.
+
+exit code: 0 crossed, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
+"""
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command; returns the exit code: 0 done, 1 the run failed, 2 the call was wrong."""
@@ -47,7 +64,11 @@ def _parser() -> argparse.ArgumentParser:
     graded.add_argument("--out", type=Path, required=True, help="folder for results.json and summary.md")
     graded.set_defaults(run=_eval)
     run = commands.add_parser(
-        "run", help="start every process of a deployment", epilog="example: surefoot run planks"
+        "run",
+        help="start every process of a deployment",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_RUN,
+        epilog="example: surefoot run planks",
     )
     run.add_argument("config", nargs="?", default="planks", help="a deployment file, or its name in config/")
     run.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
@@ -60,6 +81,8 @@ def _parser() -> argparse.ArgumentParser:
     child.add_argument("config")
     child.add_argument("name", help="io, estimator, wbc, mpc, fsm, trajopt or elevation_map")
     child.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    child.add_argument("--boot", type=int, default=0, help="how often this process has been restarted")
+    child.add_argument("--parent", type=int, default=0, help="process id that must live on; 0 the caller's")
     child.set_defaults(run=_child)
     command = commands.add_parser("command", help="command the robot of a running stack")
     command.add_argument("command", help="stand, sit, forward, backward, left, right, stop or damp")
@@ -72,6 +95,8 @@ def _parser() -> argparse.ArgumentParser:
     status = commands.add_parser("status", help="health of a running stack, once")
     status.add_argument("--namespace", default="surefoot")
     status.set_defaults(run=_status)
+    bench = commands.add_parser("bench", help="measure the hot paths on this machine")
+    bench.set_defaults(run=_bench)
     topics = commands.add_parser("topics", help="list every topic, its type, writer and rate")
     topics.set_defaults(run=_topics)
     return parser
@@ -89,24 +114,25 @@ def _eval(call: argparse.Namespace) -> int:
 
 
 def _run(call: argparse.Namespace) -> int:
-    from surefoot.config.deployment import load_deployment
     from surefoot.tools.live_run import live_run
 
-    path = _deployment_file(call.config)
-    return live_run(path, call.set, load_deployment(path, call.set), call.seconds, call.plain)
+    return live_run(_deployment_file(call.config), call.set, call.seconds, call.plain)
 
 
 def _child(call: argparse.Namespace) -> int:
+    from surefoot.bus.topics import PROCESSES
     from surefoot.components.clock_master import ClockMaster
     from surefoot.components.runner import HubRunner, Runner
     from surefoot.config.deployment import load_deployment
 
     deployment = load_deployment(_deployment_file(call.config), call.set)
+    if call.name not in PROCESSES:
+        raise ValueError(f"no process {call.name!r}; there are {', '.join(PROCESSES)}")
     if call.name != "io":
-        return Runner(deployment, call.name).run()
-    return (
-        ClockMaster(deployment).run() if deployment.run.clock == "simulated" else HubRunner(deployment, "io").run()
-    )
+        return Runner(deployment, call.name, call.boot, call.parent).run()
+    if deployment.run.clock == "simulated":
+        return ClockMaster(deployment, call.boot, call.parent).run()
+    return HubRunner(deployment, "io", call.boot, call.parent).run()
 
 
 def _command(call: argparse.Namespace) -> int:
@@ -145,25 +171,32 @@ def _say_on_bus(namespace: str, key: str, text: str) -> None:
 def _status(call: argparse.Namespace) -> int:
     import time
 
+    from rich.console import Console
+
     from surefoot.bus.codec import decode
     from surefoot.bus.messages import ProcessStatus
     from surefoot.bus.session import Session, socket_path
-    from surefoot.bus.topics import PROCESSES
+    from surefoot.tools.picture import Picture
+    from surefoot.tools.status_screen import health, process_table
 
     session = Session(call.namespace, connect_ms=2000)
-    heard: dict[str, ProcessStatus] = {}
-    session.subscribe("status/*", lambda key, payload: heard.update({key[7:]: decode(ProcessStatus, payload)}))
-    time.sleep(1.5)
+    picture = Picture()
+    session.subscribe("status/*", lambda key, payload: picture.note_status(decode(ProcessStatus, payload)))
+    time.sleep(_LISTEN_S)
     session.close()
-    print(f"connected to {socket_path(call.namespace)}")
-    for name in PROCESSES:
-        status = heard.get(name)
-        if status is None:
-            print(f"{name:14s} silent for 1.5 s: is its process running?")
-            continue
-        figures = f"{status.rate_hz:6.0f} Hz  p50 {status.step_p50_ms:6.2f} ms  p99 {status.step_p99_ms:6.2f} ms"
-        print(f"{name:14s} {status.life:13s} {figures}  bad {status.bad_messages}  {status.reason}")
-    return 0 if len(heard) == len(PROCESSES) else 1
+    console = Console()
+    console.print(f"connected to {socket_path(call.namespace)}", process_table(picture), health(picture), sep="\n")
+    silent = [name for name, watched in picture.processes.items() if watched.status is None]
+    if silent:
+        print(f"silent for {_LISTEN_S} s: {', '.join(silent)}; are they running?")
+    return 1 if silent else 0
+
+
+def _bench(call: argparse.Namespace) -> int:
+    from surefoot.tools.bench import bench
+
+    bench()
+    return 0
 
 
 def _topics(call: argparse.Namespace) -> int:

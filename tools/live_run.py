@@ -2,79 +2,151 @@
 
 from __future__ import annotations
 
+import re
+import signal
 import time
-from collections import Counter
 from pathlib import Path
 
 from rich.console import Console
 from rich.live import Live
 
-from surefoot.config.deployment import Deployment
-from surefoot.config.robot import LEGS
-from surefoot.tools.status_screen import screen
-from surefoot.tools.supervisor import Picture, Supervisor
+from surefoot.config.deployment import Deployment, load_deployment
+from surefoot.tools.picture import Picture
+from surefoot.tools.solve_time import light_profile_reason
+from surefoot.tools.status_screen import TOLD, event_line, process_table, screen
+from surefoot.tools.supervisor import Supervisor
+from surefoot.tools.verdict import Verdict, verdict
 
-_LINES = ("collapse", "late_collapse", "accepted", "rejected", "stopped", "refused")
+_LINE_S = 10.0
 
 
-def live_run(config: Path, overrides: list[str], deployment: Deployment, seconds: float, plain: bool) -> int:
-    """Run a deployment until its goal is reached, a process fails or the user ends it; returns the exit code."""
-    console = Console()
+def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) -> int:
+    """Run a deployment until it is over or the user ends it.
+
+    Args:
+        config: its file.
+        overrides: assignments `section.key=value`.
+        seconds: end after this much of the run's time; 0 no limit.
+        plain: lines even where there is a terminal.
+
+    Returns:
+        0 the platform was crossed, or it was ended in time or by the user; 1 it failed.
+    """
+    console = Console(soft_wrap=True)
+    overrides = list(overrides)
+    deployment = load_deployment(config, overrides)
+    note = ""
+    if _profile_is_open(deployment, overrides):
+        console.print("measuring how long a solve of the MPC takes here")
+        note = light_profile_reason(deployment)
+        if note:
+            overrides.append("mpc.profile=light")
+            deployment = load_deployment(config, overrides)
     supervisor = Supervisor(config, overrides, deployment)
+    if note:
+        supervisor.note(note)
+    interactive = console.is_terminal and not plain
+    title = f"Surefoot, {config.name}, {deployment.run.clock} clock, mpc {deployment.mpc.profile}"
+    state = Verdict()
 
     def until(picture: Picture) -> str:
-        reference = picture.reference
-        if reference is None:
-            return ""
-        if reference.finished:
-            return "goal reached"
-        if reference.state == "DAMP" and "fallen" in reference.reason:
-            return f"the robot fell: {reference.reason}"
-        return "time is up" if seconds and reference.t >= seconds else ""
+        nonlocal state
+        state = verdict(picture, seconds, interactive)
+        return state.reason if state.over else ""
 
-    log = Path(deployment.run.log_dir)
-    console.print(f"{config}, {deployment.run.clock} clock, logs in {log}/; Ctrl-C ends the run")
+    console.print(f"{title}; logs in {deployment.run.log_dir}/; Ctrl-C ends the run")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        if plain or not console.is_terminal:
-            reason = supervisor.run(until, _Lines(console))
+        if interactive:
+            with Live(console=console, screen=True, auto_refresh=False) as live:
+
+                def draw(picture: Picture) -> None:
+                    live.update(screen(picture, state, title), refresh=True)
+
+                reason = supervisor.run(until, _Seldom(0.2, draw))
         else:
-            with Live(screen(supervisor.picture), console=console, refresh_per_second=5) as live:
-                reason = supervisor.run(until, lambda picture: live.update(screen(picture)))
+            reason = supervisor.run(until, _Lines(console))
     except KeyboardInterrupt:
-        reason = "ended by the user"
-    _summary(console, supervisor.picture, reason, log)
-    return 0 if reason in ("goal reached", "time is up", "ended by the user", "stopped by command") else 1
+        reason, state = "ended by the user", Verdict("ended by the user", over=True, good=True)
+    if reason == "stopped by command":
+        state = Verdict(reason, over=True, good=True)
+    supervisor.note(f"{reason}. {state.advice}")
+    _summary(console, supervisor.picture, reason, state, deployment)
+    return 0 if state.good else 1
+
+
+def _profile_is_open(deployment: Deployment, overrides: list[str]) -> bool:
+    """Only a run in real time must fit the machine, and only if nobody has said which profile it is to be."""
+    said = any(override.startswith("mpc.profile=") for override in overrides)
+    return deployment.run.clock == "monotonic" and deployment.mpc.profile == "paper" and not said
+
+
+class _Seldom:
+    """Passes a call on if the last one is long enough ago."""
+
+    def __init__(self, period_s: float, call):
+        self._period_s, self._call, self._last = period_s, call, 0.0
+
+    def __call__(self, picture: Picture) -> None:
+        now = time.monotonic()
+        if now - self._last >= self._period_s:
+            self._last = now
+            self._call(picture)
 
 
 class _Lines:
     """The status as lines, for a terminal that is none."""
 
     def __init__(self, console: Console):
-        self._console, self._told, self._t = console, 0, -10.0
+        self._console = console
+        self._events = self._notes = 0
+        self._last = time.monotonic()
+        self._said: dict[str, str] = {}
 
     def __call__(self, picture: Picture) -> None:
-        events = list(picture.events)
-        for event in events[self._told :]:
-            if event.kind in _LINES:
-                leg = LEGS[event.leg] if event.leg >= 0 else ""
-                self._console.print(f"{event.t:7.1f} s  {leg} {event.kind}: {event.reason}")
-        self._told = len(events)
-        reference = picture.reference
-        if reference is not None and reference.t - self._t >= 10.0:
-            self._t = reference.t
-            factor = reference.t / max(time.monotonic() - picture.began, 1e-3)
-            self._console.print(f"{reference.t:7.1f} s  {reference.state}, real-time factor {factor:.2f}")
+        say = self._console.print
+        events, notes = list(picture.events), list(picture.notes)
+        for event in events[self._events :]:
+            if event.kind in TOLD:
+                say(event_line(event), markup=False, highlight=False)
+        for note in notes[self._notes :]:
+            say(f"supervisor: {note}", markup=False, highlight=False)
+        self._events, self._notes = len(events), len(notes)
+        self._health(picture)
+        now = time.monotonic()
+        if picture.reference is not None and now - self._last >= _LINE_S:
+            self._last = now
+            say(
+                f"{picture.t:8.2f} s  {picture.reference.state}, real-time factor "
+                f"{picture.real_time_factor(recent=True):.2f}, {picture.counts['accepted']} footholds",
+                highlight=False,
+            )
+
+    def _health(self, picture: Picture) -> None:
+        """A process's reason when it changes; a figure that counts up is no change."""
+        for name, watched in picture.processes.items():
+            reason = watched.status.reason if watched.status is not None else ""
+            words = re.sub(r"[\d.]+", "#", reason)
+            if words != self._said.get(name, ""):
+                self._said[name] = words
+                if reason:
+                    self._console.print(f"{picture.t:8.2f} s  {name}: {reason}", markup=False, highlight=False)
 
 
-def _summary(console: Console, picture: Picture, reason: str, log: Path) -> None:
-    counts = Counter(event.kind for event in picture.events)
-    reference, estimate = picture.reference, picture.estimate
-    console.print(f"\n{reason}")
-    if reference is not None and estimate is not None:
-        passed = time.monotonic() - picture.began
-        console.print(
-            f"{reference.t:.1f} s of the run's time in {passed:.0f} s, {estimate.p_WB[0]:.2f} m forward, "
-            f"{counts['accepted']} footholds accepted, {counts['collapse']} collapses, "
-            f"{counts['rejected']} candidates out of reach"
-        )
-    console.print(f"process logs: {log}/")
+def _summary(console: Console, picture: Picture, reason: str, state: Verdict, deployment: Deployment) -> None:
+    counts, x = picture.counts, picture.estimate.p_WB[0] if picture.estimate is not None else 0.0
+    collapses = counts["collapse"] + counts["late_collapse"]
+    lines = [
+        "",
+        reason,
+        f"{picture.t:.1f} s of the run's time, real-time factor {picture.real_time_factor():.2f}",
+        f"{x:.2f} m forward, {counts['accepted']} footholds accepted, {collapses} collapses, "
+        f"{counts['rejected']} candidates out of reach, largest displacement "
+        f"{1e3 * picture.displacement_m:.0f} mm, {picture.restarts} restarts",
+    ]
+    if state.advice:
+        lines.append(f"next: {state.advice}")
+    lines.append(f"process logs: {deployment.run.log_dir}/")
+    if not state.good:
+        console.print(process_table(picture))
+    console.print("\n".join(lines), markup=False, highlight=False)

@@ -7,93 +7,135 @@ import time
 from rich.console import Group
 from rich.panel import Panel
 from rich.table import Table
+from rich.text import Text
 
-from surefoot.bus.topics import PROCESSES, TOPICS
+from surefoot.bus.messages import ProcessStatus
+from surefoot.bus.topics import TOPICS
 from surefoot.config.robot import LEGS
-from surefoot.tools.supervisor import Picture
+from surefoot.tools.picture import Picture
+from surefoot.tools.verdict import Verdict
+
+TOLD = ("contact", "collapse", "late_collapse", "accepted", "rejected", "stopped", "refused", "waiting")
+"""Kinds of events worth a line."""
 
 _SILENT_S = 3.0
-_TOLD = ("contact", "collapse", "late_collapse", "accepted", "rejected", "stopped", "refused", "waiting")
+_RATE_BAND = 0.2  # a rate is well within so much of nominal
+_EVENTS, _REASONS = 5, 4
 
 
-def screen(picture: Picture) -> Group:
-    """A rich renderable of what the supervisor has heard."""
-    return Group(_machine(picture), _processes(picture), _events(picture))
+def screen(picture: Picture, verdict: Verdict, title: str) -> Group:
+    """A rich renderable of what the supervisor has heard; fits 80 columns and 30 lines."""
+    parts = [_machine(picture, title), process_table(picture), health(picture), _events(picture)]
+    if verdict.reason:
+        parts.append(Text(f"{verdict.reason}. {verdict.advice}", style="bold red"))
+    return Group(*parts)
 
 
-def _machine(picture: Picture) -> Panel:
+def event_line(event) -> str:
+    """One event in a line."""
+    leg = LEGS[event.leg] if event.leg >= 0 else "  "
+    return f"{event.t:8.2f} s  {leg}  {event.kind}: {event.reason}"
+
+
+def _machine(picture: Picture, title: str) -> Panel:
     reference, estimate = picture.reference, picture.estimate
     if reference is None or estimate is None:
-        return Panel("waiting for the first messages", title="Surefoot")
-    passed = max(time.monotonic() - picture.began, 1e-3)
-    leg = reference.leg
+        said = [w.status.reason for w in picture.processes.values() if w.status is not None and w.status.reason]
+        return Panel(said[0] if said else "the processes come up", title=title)
+    leg, counts = reference.leg, picture.counts
     lines = [f"[bold]{reference.state}[/bold]  {reference.reason}"]
     if leg >= 0:
-        place = "foothold" if reference.candidate == 0 else f"alternative {reference.candidate}"
-        around = f", point {reference.around} around it" if reference.around else ""
-        lines.append(f"leg {LEGS[leg]}, {place}{around}")
+        candidate = "planned foothold" if reference.candidate == 0 else f"alternative {reference.candidate} of 3"
+        around = f", point {reference.around} of 4 around it" if 1 <= reference.around <= 4 else ""
+        lines.append(f"leg [bold]{LEGS[leg]}[/bold], {candidate}{around}")
         held = estimate.force_W[leg] @ estimate.normal_W
-        asked = "-"
-        if reference.force_index >= 0:
-            asked = f"{reference.probe_force_W[reference.force_index + 1] @ reference.normal_W:.0f} N"
-        lines.append(f"force {reference.force_index + 1} of 6: asked {asked}, measured {held:.0f} N")
+        asked = "  -"
+        if 0 <= reference.force_index < len(reference.probe_force_W) - 1:
+            force = reference.probe_force_W[reference.force_index + 1] @ reference.normal_W
+            asked = f"{force:3.0f}"
+            lines[-1] += f", force {reference.force_index + 1} of 6"
+        margin = "-" if picture.margin_m is None else f"{1e3 * picture.margin_m:.0f} mm"
+        lines.append(f"force asked {asked} N, measured {held:3.0f} N;  support margin {margin}")
+    else:
+        lines.append("four feet stand")
     lines.append(
-        f"t {reference.t:.1f} s, real-time factor {reference.t / passed:.2f}, "
-        f"base x {estimate.p_WB[0]:.2f} m, z {estimate.p_WB[2]:.2f} m"
+        f"t {reference.t:.1f} s, real-time factor {picture.real_time_factor(recent=True):.2f};  "
+        f"forward {estimate.p_WB[0]:.2f} m, height {estimate.p_WB[2]:.2f} m"
     )
-    return Panel("\n".join(lines), title="Surefoot")
+    lines.append(
+        f"footholds accepted {counts['accepted']}, collapses {counts['collapse'] + counts['late_collapse']}, "
+        f"out of reach {counts['rejected']}, largest displacement {1e3 * picture.displacement_m:.0f} mm"
+    )
+    return Panel("\n".join(lines), title=title)
 
 
-def _processes(picture: Picture) -> Table:
-    table = Table(expand=True)
-    for column in (
-        "process",
-        "state",
-        "rate Hz",
-        "nominal",
-        "p50 ms",
-        "p99 ms",
-        "overruns",
-        "bad",
-        "restarts",
-        "",
-    ):
-        table.add_column(column, justify="left" if column in ("process", "state", "") else "right")
-    now = time.monotonic()
-    for name in PROCESSES:
-        watched = picture.processes[name]
+def process_table(picture: Picture) -> Table:
+    """Each process's life, rate against nominal, step times, oldest input, and what went wrong how often."""
+    table = Table(expand=True, box=None, padding=(0, 1, 0, 0), header_style="dim")
+    # Least widths: the input's name gives way first on a narrow terminal.
+    widths = {
+        "process": 13,
+        "state": 5,
+        "Hz": 7,
+        "p50 ms": 6,
+        "p99 ms": 6,
+        "oldest input": 12,
+        "late": 4,
+        "bad": 3,
+    }
+    for column, width in (widths | {"restarts": 8}).items():
+        justify = "left" if column in ("process", "state", "oldest input") else "right"
+        table.add_column(column, justify=justify, no_wrap=True, overflow="ellipsis", min_width=width)
+    for name, watched in picture.processes.items():
         status = watched.status
+        restarts = str(watched.restarts)
         if status is None:
-            table.add_row(name, "starting", *[""] * 6, str(watched.restarts), "")
+            table.add_row(name, "not heard", *[""] * 6, restarts)
             continue
-        reason = status.reason
-        if now - watched.heard > _SILENT_S:
-            reason = f"silent for {now - watched.heard:.0f} s"
+        nominal = status.nominal_hz
+        rate = f"{status.rate_hz:.0f}/{nominal:.0f}" if nominal else "on event"
+        off = nominal and abs(status.rate_hz / nominal - 1.0) > _RATE_BAND
         table.add_row(
             name,
-            status.life,
-            f"{status.rate_hz:.0f}",
-            _nominal(name),
+            Text(status.life, style="bold red" if status.life == "FAILED" else ""),
+            Text(rate, style="yellow" if off else ""),
             f"{status.step_p50_ms:.2f}",
             f"{status.step_p99_ms:.2f}",
+            _oldest_input(status),
             str(status.overruns),
             str(status.bad_messages),
-            str(watched.restarts),
-            reason,
+            restarts,
         )
     return table
 
 
-def _nominal(name: str) -> str:
-    process = PROCESSES[name]
-    rate = process.rate_hz or TOPICS[process.trigger].rate_hz / process.every
-    return f"{rate:.0f}" if rate else "event"
+def health(picture: Picture) -> Text:
+    """In words what is the matter with which process; nothing when all is well."""
+    now, lines = time.monotonic(), []
+    for name, watched in picture.processes.items():
+        if watched.status is None:
+            continue
+        silent = now - watched.heard
+        reason = f"silent for {silent:.0f} s" if silent > _SILENT_S else watched.status.reason
+        if reason:
+            lines.append(f" {name}: {reason}")
+    return Text("\n".join(lines[:_REASONS]), style="yellow", overflow="ellipsis", no_wrap=True)
+
+
+def _oldest_input(status: ProcessStatus) -> Text:
+    """The input that is oldest for what its topic allows, with its age; red when that is too old."""
+    ages = [
+        (age / TOPICS[key].stale_after_s, key, age)
+        for key, age in zip(status.input, status.input_age_s, strict=False)
+        if TOPICS[key].stale_after_s and age >= 0.0
+    ]
+    if not ages:
+        return Text("-")
+    share, key, age = max(ages)
+    return Text(f"{key} {1e3 * age:.0f} ms", style="red" if share > 1.0 else "")
 
 
 def _events(picture: Picture) -> Panel:
-    told = [event for event in list(picture.events) if event.kind in _TOLD][-8:]
-    lines = [
-        f"{event.t:7.1f} s  {LEGS[event.leg] if event.leg >= 0 else '  '}  {event.kind}: {event.reason}"
-        for event in told
-    ]
-    return Panel("\n".join(lines) or "-", title="events")
+    told = [event_line(event) for event in list(picture.events)[-60:] if event.kind in TOLD]
+    lines = told[-_EVENTS:] + [f"supervisor: {note}" for note in picture.notes[-2:]]
+    return Panel(Text("\n".join(lines) or "-", overflow="ellipsis", no_wrap=True), title="last events")

@@ -8,53 +8,37 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from surefoot.bus.codec import decode, encode
-from surefoot.bus.errors import MessageError
-from surefoot.bus.messages import FsmEvent, MotionReference, OperatorCommand, ProcessStatus, StateEstimate
-from surefoot.bus.session import Session
+from surefoot.bus.codec import decode
+from surefoot.bus.errors import BusError, MessageError
+from surefoot.bus.messages import FsmEvent, MotionReference, ProcessStatus, StateEstimate
+from surefoot.bus.session import Session, refuse_second_hub
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
+from surefoot.components.component import Component
+from surefoot.components.registry import component_class
 from surefoot.config.deployment import Deployment
+from surefoot.tools.picture import Picture, SupportMargin, Watched
 
 REQUEST = "supervisor/request"
-"""Key on which `surefoot restart NAME` reaches the supervisor: "restart NAME"."""
+"""Key on which `surefoot restart NAME` reaches the supervisor: "restart NAME", or "stop"."""
+
+MAX_CRASHES = 3
+"""In simulation a process that ends by itself is started again as often as this."""
 
 _KILL_AFTER_S = 3.0
 _LOOK_S = 0.1
+_HUB_S = 60.0
 # The planner first, the hardware last: what is downstream keeps the robot while its upstream goes.
 _STOP_ORDER = ("fsm", "trajopt", "elevation_map", "mpc", "wbc", "estimator", "io")
-
-
-@dataclass
-class Watched:
-    """One process of the run."""
-
-    name: str
-    popen: subprocess.Popen | None = None
-    restarts: int = 0
-    status: ProcessStatus | None = None
-    heard: float = 0.0
-
-
-@dataclass
-class Picture:
-    """What the supervisor has heard of the run, for a status display."""
-
-    processes: dict[str, Watched] = field(default_factory=dict)
-    reference: MotionReference | None = None
-    estimate: StateEstimate | None = None
-    events: list[FsmEvent] = field(default_factory=list)
-    began: float = 0.0
-    ended: str = ""
 
 
 class Supervisor:
     """Reconciles wanted and running processes of one deployment.
 
-    A process of the control chain that ends by itself in simulation is started again; simulated time waits.
+    In simulation a process that ends by itself is started again, and simulated time waits for it. On the
+    monotonic clock the run ends: the gate in io damps the robot as soon as commands are missing.
 
     Attributes:
         picture: what has been heard, updated while `run` goes on.
@@ -62,36 +46,44 @@ class Supervisor:
 
     def __init__(self, config: Path, overrides: list[str], deployment: Deployment):
         self._config, self._overrides, self._deployment = config, list(overrides), deployment
-        if deployment.run.clock == "monotonic":
+        self._simulated = deployment.run.clock == "simulated"
+        if not self._simulated:
             self._overrides.append(f"run.epoch_s={time.monotonic()!r}")
         self._log_dir = Path(deployment.run.log_dir)
-        self.picture = Picture({name: Watched(name) for name in PROCESSES}, began=time.monotonic())
+        self._margin = SupportMargin(deployment.load_robot())
+        self.picture = Picture()
         self._session: Session | None = None
+        self._newest: dict[str, Callable[[], bytes | None]] = {}
         self._requests: list[str] = []
 
     def run(self, until: Callable[[Picture], str], each: Callable[[Picture], None] = lambda picture: None) -> str:
         """Start everything; until `until(picture)` gives a reason to end, which is returned.
 
         Whatever happens, no process is left behind.
+
+        Raises:
+            BusError: io did not come up, or another run has this namespace.
         """
+        refuse_second_hub(self._deployment.run.namespace)
         self._log_dir.mkdir(parents=True, exist_ok=True)
         try:
             self._start("io")
-            self._session = Session(self._deployment.run.namespace)
+            self._session = self._connect()
             self._listen()
-            self._await_hub()
-            if self._deployment.run.clock == "simulated":
+            self._await("io")
+            if self._simulated:
                 self._command(self._deployment.run.command)
             for name in PROCESSES:
                 if name != "io":
                     self._start(name)
-            if self._deployment.run.clock == "monotonic":
+            if not self._simulated:
+                self._await("fsm")
                 self._command(self._deployment.run.command)
             while True:
+                self._hear()
                 reason = until(self.picture) or self._reconcile()
                 each(self.picture)
                 if reason:
-                    self.picture.ended = reason
                     return reason
                 time.sleep(_LOOK_S)
         finally:
@@ -105,26 +97,46 @@ class Supervisor:
             self._session.close()
             self._session = None
 
-    def restart(self, name: str) -> str:
-        """Restart one process; returns what was done, or why not."""
+    def restart(self, name: str) -> None:
+        """Restart one process; what was done, or why not, is noted in the picture."""
         if name not in PROCESSES:
-            return f"no process {name!r}; there are {', '.join(PROCESSES)}"
-        if name == "io":
-            return "io holds the robot and the bus: stop the run instead"
-        watched = self.picture.processes[name]
-        self._end(watched)
-        watched.restarts += 1
-        self._start(name)
-        return f"{name} restarted"
+            self.note(f"cannot restart {name!r}: there are {', '.join(PROCESSES)}")
+        elif name == "io":
+            self.note("cannot restart io: it holds the robot and the bus; stop the run instead")
+        else:
+            watched = self.picture.processes[name]
+            self._end(watched)
+            self._start_again(watched)
+            self.note(f"{name} restarted on request")
+
+    def note(self, words: str) -> None:
+        """Say something on the display and in the supervisor's log."""
+        self.picture.notes.append(words)
+        self._log_dir.mkdir(parents=True, exist_ok=True)
+        with self._log_of("supervisor").open("a") as log:
+            log.write(f"{self.picture.t:.3f} s  {words}\n")
+
+    # Processes ------------------------------------------------------------------------------------------
 
     def _start(self, name: str) -> None:
+        watched = self.picture.processes[name]
         settings = [word for override in self._overrides for word in ("--set", override)]
-        log = (self._log_dir / f"{name}.log").open("ab")
         command = [sys.executable, "-P", "-m", "surefoot.tools.cli", "child", str(self._config), name, *settings]
-        self.picture.processes[name].popen = subprocess.Popen(
-            command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, env=dict(os.environ)
-        )
-        log.close()
+        command += ["--boot", str(watched.restarts), "--parent", str(os.getpid())]
+        with self._log_of(name).open("ab") as log:
+            # A session of its own: Ctrl-C reaches the supervisor alone, which ends all in order.
+            watched.popen = subprocess.Popen(
+                command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, start_new_session=True
+            )
+        watched.status = None
+
+    def _start_again(self, watched: Watched) -> None:
+        watched.restarts += 1
+        if watched.name == "fsm" and component_class("fsm").snapshot is Component.snapshot:
+            # It keeps no memory of what the robot does, and would begin by damping it.
+            self._command("stand")
+            self.note("fsm has lost its place and stands the robot: `surefoot command forward` goes on")
+        self._start(watched.name)
 
     @staticmethod
     def _end(watched: Watched) -> None:
@@ -147,55 +159,83 @@ class Supervisor:
             elif verb == "stop":
                 return "stopped by command"
         for watched in self.picture.processes.values():
-            code = None if watched.popen is None else watched.popen.poll()
-            if code is None:
+            if watched.popen is None or watched.popen.poll() is None:
                 continue
-            where = f"exit code {code}, see {self._log_dir / (watched.name + '.log')}"
-            if watched.name == "io" or self._deployment.run.clock == "monotonic" or watched.restarts >= 3:
-                return f"{watched.name} ended: {where}"
-            watched.restarts += 1
-            self._start(watched.name)
+            what = self._obituary(watched)
+            watched.crashes += 1
+            if watched.name == "io" or not self._simulated:
+                return what
+            if watched.crashes > MAX_CRASHES:
+                return f"{what}; it had been restarted {MAX_CRASHES} times"
+            self._start_again(watched)
+            self.note(f"{what}; restarted, {watched.crashes} of {MAX_CRASHES}")
         return ""
 
-    def _await_hub(self) -> None:
-        """Until io has spoken: what is published before its subscriptions stand is lost."""
-        io = self.picture.processes["io"]
-        while io.status is None and io.popen.poll() is None:
+    def _obituary(self, watched: Watched) -> str:
+        """How a process ended, in words."""
+        code = watched.popen.returncode
+        how = f"signal {-code}" if code < 0 else f"exit code {code}"
+        log = self._log_of(watched.name)
+        lines = log.read_text(errors="replace").strip().splitlines() if log.exists() else []
+        last = f" ({lines[-1][:160]})" if lines and code > 0 else ""
+        return f"{watched.name} ended with {how}{last}, see {log}"
+
+    def _log_of(self, name: str) -> Path:
+        return self._log_dir / f"{name}.log"
+
+    # The bus --------------------------------------------------------------------------------------------
+
+    def _connect(self) -> Session:
+        """The bus, as soon as io holds it."""
+        io, end = self.picture.processes["io"], time.monotonic() + _HUB_S
+        while True:
+            try:
+                return Session(self._deployment.run.namespace, connect_ms=1000)
+            except BusError:
+                if io.popen.poll() is not None:
+                    raise BusError(self._obituary(io)) from None
+                if time.monotonic() > end:
+                    raise BusError(
+                        f"io did not open the bus in {_HUB_S:.0f} s, see {self._log_of('io')}"
+                    ) from None
+
+    def _await(self, name: str) -> None:
+        """Until a process has spoken: what is published before its subscriptions stand is lost."""
+        watched = self.picture.processes[name]
+        while watched.status is None and watched.popen.poll() is None:
             time.sleep(_LOOK_S)
 
     def _listen(self) -> None:
         session = self._session
+        self._newest = {key: session.newest(key) for key in ("state/estimate", "fsm/reference")}
         session.subscribe("status/*", self._on_status)
-        session.subscribe("fsm/reference", lambda key, payload: self._on(MotionReference, "reference", payload))
-        session.subscribe("state/estimate", lambda key, payload: self._on(StateEstimate, "estimate", payload))
         session.subscribe("fsm/event", self._on_event)
         session.subscribe(REQUEST, lambda key, payload: self._requests.append(payload.decode(errors="replace")))
 
     def _command(self, command: str) -> None:
-        """The deployment's own command, given for the operator."""
-        if not command:
-            return
-        if self._deployment.run.clock == "simulated":
+        """A command, given for the operator."""
+        if command:
             self._session.put(clock.REQUEST, command.encode())
-        else:
-            t = time.monotonic() - self.picture.began
-            time.sleep(2.0)  # the state machine must have joined the bus to hear it
-            self._session.put("operator/command", encode(OperatorCommand(t=t, valid=True, command=command)))
 
-    def _on(self, kind: type, name: str, payload: bytes) -> None:
-        # The readers that act on a malformed message count and report it.
-        with suppress(MessageError):
-            setattr(self.picture, name, decode(kind, payload))
+    def _hear(self) -> None:
+        # The readers that act on a malformed message count and report it; here the last good one stays.
+        picture = self.picture
+        for key, kind, name in (
+            ("state/estimate", StateEstimate, "estimate"),
+            ("fsm/reference", MotionReference, "reference"),
+        ):
+            payload = self._newest[key]()
+            if payload is not None:
+                with suppress(MessageError):
+                    setattr(picture, name, decode(kind, payload))
+        picture.note_time()
+        if picture.estimate is not None and picture.reference is not None:
+            picture.margin_m = self._margin(picture.estimate, picture.reference)
 
     def _on_status(self, key: str, payload: bytes) -> None:
-        try:
-            status = decode(ProcessStatus, payload)
-        except MessageError:
-            return
-        watched = self.picture.processes.get(status.process)
-        if watched is not None:
-            watched.status, watched.heard = status, time.monotonic()
+        with suppress(MessageError):
+            self.picture.note_status(decode(ProcessStatus, payload))
 
     def _on_event(self, key: str, payload: bytes) -> None:
         with suppress(MessageError):
-            self.picture.events.append(decode(FsmEvent, payload))
+            self.picture.note_event(decode(FsmEvent, payload))

@@ -5,14 +5,18 @@ from __future__ import annotations
 from typing import ClassVar
 
 from surefoot.bus.messages import HardwareState
+from surefoot.bus.topics import PROCESSES
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.config.deployment import Deployment
 from surefoot.hw.gate import Gate
 from surefoot.hw.mujoco.backend import MujocoRobot
+from surefoot.hw.robot_interface import MotorLaw
+
+_RATE_HZ = PROCESSES["io"].rate_hz
 
 
 class Io(Component):
-    """Reads, publishes, gates and writes, then lets the plant advance by one cycle.
+    """Reads, publishes, gates and writes, then lets the plant advance to the next cycle.
 
     Every command passes the gate in the cycle in which it is applied; a missing, stale or malformed one
     makes that same cycle damp.
@@ -29,6 +33,8 @@ class Io(Component):
         super().__init__(deployment)
         self.robot = MujocoRobot(deployment)
         self._gate = Gate(deployment.load_robot(), deployment.hw)
+        self._began: float | None = None
+        self._cycles = 0
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         sensors = self.robot.read()
@@ -48,5 +54,14 @@ class Io(Component):
             ),
         )
         outbox.publish("sim/truth", self.robot.truth())
-        self.robot.write(law)
-        self.robot.advance()
+        self._advance(t, law)
+
+    def _advance(self, t: float, law: MotorLaw) -> None:
+        """One cycle; on the monotonic clock those that were missed too: a simulated plant does not wait."""
+        if self._began is None:
+            self._began = t
+        due = round((t - self._began) * _RATE_HZ) + 1
+        for _ in range(max(due - self._cycles, 0)):
+            self.robot.write(law)
+            self.robot.advance()
+            self._cycles += 1

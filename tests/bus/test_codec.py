@@ -100,3 +100,12 @@ def test_the_table_names_only_known_writers_and_triggers():
     for process in PROCESSES.values():
         assert bool(process.rate_hz) != bool(process.trigger), process.name
         assert not process.trigger or process.trigger in TOPICS
+
+
+def test_a_message_of_another_type_is_refused():
+    for cls in MESSAGES:
+        data = encode(filled(cls, np.random.default_rng(4)))
+        for other in MESSAGES:
+            if other is not cls:
+                with pytest.raises(MessageError, match=f"says '{cls.__name__}': another type"):
+                    decode(other, data)

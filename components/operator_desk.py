@@ -1,0 +1,38 @@
+"""Where people's commands reach the stack: dated, numbered and published, by the process that holds the bus."""
+
+from __future__ import annotations
+
+import queue
+from collections import deque
+
+from surefoot.bus.codec import encode
+from surefoot.bus.messages import OperatorCommand
+from surefoot.bus.session import Session
+from surefoot.components import clock_messages as clock
+from surefoot.components.topic_buffer import KEPT
+
+_TOPIC = "operator/command"
+
+
+class OperatorDesk:
+    """Turns requests into messages on `operator/command`."""
+
+    def __init__(self, session: Session):
+        self._session = session
+        self._requests: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        self._kept: deque[bytes] = deque(maxlen=KEPT)
+        self._sent = 0
+        session.subscribe(clock.REQUEST, lambda key, payload: self._requests.put(payload))
+        session.serve(f"{clock.KEPT}/{_TOPIC}", lambda: list(self._kept))
+
+    def publish(self, t: float) -> int:
+        """Publish at time `t` [s] what has been asked; how many commands that were."""
+        count = 0
+        while not self._requests.empty():
+            command = self._requests.get().decode(errors="replace")
+            payload = encode(OperatorCommand(t=t, seq=self._sent, valid=True, command=command))
+            self._kept.append(payload)
+            self._session.put(_TOPIC, payload)
+            self._sent += 1
+            count += 1
+        return count

@@ -1,0 +1,85 @@
+"""Every message in its place: order, restarts, second publishers, late readers."""
+
+from surefoot.bus.codec import encode
+from surefoot.bus.messages import JointCommand
+from surefoot.components.component import Inbox
+from surefoot.components.topic_buffer import KEPT, TopicBuffers
+
+KEY = "joint/command"
+
+
+def packed(seq, boot=0, t=0.0):
+    return encode(JointCommand(t=t, seq=seq, boot=boot, valid=True))
+
+
+class Reader:
+    def __init__(self, trigger=None):
+        self.buffers, self.inbox = TopicBuffers((KEY,), trigger), Inbox((KEY,))
+
+    def put(self, *payloads):
+        for payload in payloads:
+            self.buffers.put(KEY, payload)
+
+    def read(self, visible):
+        """Sequence numbers and boots handed over."""
+        self.inbox.clear_new()
+        self.lost = self.buffers.deliver_visible({KEY: visible}, self.inbox, 0.01)
+        return [(message.seq, message.boot) for message in self.inbox.new(KEY)]
+
+
+def test_exactly_what_is_visible_is_handed_over_in_order():
+    reader = Reader()
+    reader.put(packed(1), packed(0), packed(2))
+    assert reader.read(2) == [(0, 0), (1, 0)]
+    assert reader.read(2) == []
+    assert reader.read(3) == [(2, 0)] and reader.buffers.bad == 0
+
+
+def test_a_message_that_does_not_come_is_named_and_skipped():
+    reader = Reader()
+    reader.put(packed(0), packed(2))
+    assert reader.read(3) == [(0, 0), (2, 0)]
+    assert "message 1 of 3 did not arrive" in reader.lost
+
+
+def test_a_second_publisher_is_told_and_dropped():
+    reader = Reader()
+    reader.put(packed(0), packed(0), packed(0, t=9.0), packed(10**6))
+    assert reader.read(1) == [(0, 0)] and reader.buffers.bad == 2
+    reader.put(packed(0, t=8.0), packed(1))
+    assert reader.read(2) == [(1, 0)] and reader.buffers.bad == 3
+    assert reader.buffers.last_error.startswith(f"{KEY}: message 0 is out of place")
+
+
+def test_what_a_restarted_writer_says_replaces_what_was_not_visible_yet():
+    reader = Reader()
+    reader.put(packed(0), packed(1), packed(1, boot=1, t=1.0), packed(2, boot=1))
+    assert reader.read(3) == [(0, 0), (1, 1), (2, 1)] and reader.buffers.bad == 0
+
+
+def test_a_new_reader_takes_the_place_of_the_old_one():
+    reader = Reader()
+    kept = {KEY: [packed(seq) for seq in range(2, 8)]}
+    reader.put(packed(7))
+    reader.buffers.resume({KEY: 5}, {KEY: 7}, kept, reader.inbox)
+    assert reader.inbox.latest(KEY).seq == 4 and not reader.inbox.new(KEY)
+    assert [seq for seq, _ in reader.read(7)] == [5, 6]
+    assert [seq for seq, _ in reader.read(8)] == [7] and reader.buffers.bad == 0
+
+
+def test_a_reader_that_is_released_seldom_gets_the_last_ones():
+    reader = Reader()
+    reader.put(*(packed(seq) for seq in range(1000)))
+    assert [seq for seq, _ in reader.read(1000)] == list(range(1000 - KEPT, 1000))
+    assert reader.buffers.bad == 0 and not reader.lost
+
+
+def test_in_real_time_what_falls_behind_is_dropped_until_it_is_a_sequence_of_its_own():
+    reader = Reader(trigger=KEY)
+    reader.put(packed(5), packed(3), packed(6), packed(0, boot=1), packed(7), packed(1, boot=1))
+    reader.buffers.deliver_all(reader.inbox)
+    assert [(m.seq, m.boot) for m in reader.inbox.new(KEY)] == [(5, 0), (6, 0), (0, 1), (1, 1)]
+    assert reader.buffers.bad == 2
+    reader.put(*(packed(seq) for seq in range(20, 40)))
+    reader.buffers.deliver_all(reader.inbox)
+    assert reader.inbox.latest(KEY).seq == 39

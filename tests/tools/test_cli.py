@@ -1,0 +1,31 @@
+"""A wrong call ends with code 2 and says what would be right."""
+
+import pytest
+
+from surefoot.tools.cli import main
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (["run", "nowhere.toml"], "no such file: nowhere.toml"),
+        (["run", "flat", "--set", "hw.sed=3"], "did you mean hw.seed?"),
+        (["run", "flat", "--set", "hw.friction_max=7"], "out of range, allowed 0 to 2"),
+        (["run", "flat", "--set", "hw"], "section.key=value"),
+        (["restart", "io"], "io holds robot and bus"),
+        (["restart", "engine"], "processes that can be: estimator"),
+        (["command", "jump"], "there are forward"),
+        (["child", "flat", "engine"], "no process 'engine'"),
+        (["eval", "flat", "--seeds", "x", "--out", "out"], "--seeds 'x'"),
+    ],
+)
+def test_a_wrong_call_is_answered_by_what_would_be_right(call, words, capsys):
+    assert main(call) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_a_malformed_file_is_named_with_its_line(tmp_path, capsys):
+    path = tmp_path / "broken.toml"
+    path.write_text("[hw]\nseed = \n")
+    assert main(["run", str(path)]) == 2
+    assert "broken.toml is not valid TOML" in (said := capsys.readouterr().err) and "line 2" in said

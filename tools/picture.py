@@ -1,0 +1,113 @@
+"""What a run looks like from outside: all that a display, a summary or a verdict needs."""
+
+from __future__ import annotations
+
+import subprocess
+import time
+from collections import Counter, deque
+from dataclasses import dataclass, field
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.bus.messages import FsmEvent, MotionReference, ProcessStatus, StateEstimate
+from surefoot.bus.topics import PROCESSES
+from surefoot.components.fsm.support_triangle import SupportTriangle
+from surefoot.components.robot_model import build_model
+from surefoot.config.robot import Robot
+
+_RECENT_S = 10.0
+
+
+@dataclass
+class Watched:
+    """One process of the run."""
+
+    name: str
+    popen: subprocess.Popen | None = None
+    restarts: int = 0
+    crashes: int = 0
+    status: ProcessStatus | None = None
+    heard: float = 0.0  # monotonic clock of the last status [s]
+
+
+@dataclass
+class Picture:
+    """What the supervisor has heard of the run.
+
+    Attributes:
+        processes: by name.
+        reference, estimate: the newest messages, or None.
+        margin_m: distance of the centre of mass from the edge of the triangle of the feet other than the leg
+            that is moved or probed, positive inside; None while four feet stand.
+        events: of the state machine, oldest first.
+        counts: how many events of each kind.
+        displacement_m: the largest of a foot on the ground.
+        notes: what the supervisor did, in words.
+    """
+
+    processes: dict[str, Watched] = field(default_factory=lambda: {name: Watched(name) for name in PROCESSES})
+    reference: MotionReference | None = None
+    estimate: StateEstimate | None = None
+    margin_m: float | None = None
+    events: list[FsmEvent] = field(default_factory=list)
+    counts: Counter[str] = field(default_factory=Counter)
+    displacement_m: float = 0.0
+    notes: list[str] = field(default_factory=list)
+    _clock: deque[tuple[float, float]] = field(default_factory=deque)
+    _first: tuple[float, float] | None = None
+
+    @property
+    def t(self) -> float:
+        """Time of the run [s]."""
+        return self.reference.t if self.reference is not None else 0.0
+
+    @property
+    def restarts(self) -> int:
+        """Of all processes."""
+        return sum(watched.restarts for watched in self.processes.values())
+
+    def note_event(self, event: FsmEvent) -> None:
+        """Take in an event."""
+        self.events.append(event)
+        self.counts[event.kind] += 1
+        self.displacement_m = max(self.displacement_m, event.displacement_m)
+
+    def note_status(self, status: ProcessStatus) -> None:
+        """Take in what a process says of itself."""
+        watched = self.processes.get(status.process)
+        if watched is not None:
+            watched.status, watched.heard = status, time.monotonic()
+
+    def note_time(self) -> None:
+        """Mark how far the run's clock has come by now."""
+        now = time.monotonic(), self.t
+        if self._first is None and self.t > 0.0:
+            self._first = now
+        self._clock.append(now)
+        while now[0] - self._clock[0][0] > _RECENT_S:
+            self._clock.popleft()
+
+    def real_time_factor(self, recent: bool = False) -> float:
+        """Seconds of the run for each second on the wall: over the last ten seconds, or since time began."""
+        if self._first is None:
+            return 0.0
+        (wall0, t0), (wall1, t1) = self._clock[0] if recent else self._first, self._clock[-1]
+        return (t1 - t0) / max(wall1 - wall0, 1e-3)
+
+
+class SupportMargin:
+    """How far the centre of mass lies inside the feet that carry."""
+
+    def __init__(self, robot: Robot):
+        self._model = build_model(robot)
+        self._data = self._model.createData()
+
+    def __call__(self, estimate: StateEstimate, reference: MotionReference) -> float | None:
+        """[m], positive inside; None while no leg is moved or probed."""
+        if reference.leg < 0:
+            return None
+        w, x, y, z = estimate.quat_WB
+        q = np.concatenate([estimate.p_WB, [x, y, z, w], estimate.q])
+        com_W = pin.centerOfMass(self._model, self._data, q)
+        return SupportTriangle(reference.p_WF, reference.leg).margin(com_W[:2])

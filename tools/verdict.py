@@ -1,0 +1,53 @@
+"""When a run is over, whether it went well, and what to do next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from surefoot.tools.picture import Picture
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """How a run stands.
+
+    Attributes:
+        reason: in words; empty while there is nothing to say.
+        over: the run ends.
+        good: it went as it should.
+        advice: what to do next; empty when there is nothing to do.
+    """
+
+    reason: str = ""
+    over: bool = False
+    good: bool = False
+    advice: str = ""
+
+
+def verdict(picture: Picture, seconds: float, interactive: bool) -> Verdict:
+    """The verdict of the moment.
+
+    The run is over when the platform is crossed, the robot has fallen or been damped, or `seconds` of its
+    time have passed (0: no limit). A robot that found no safe foothold stands and waits for a person; where
+    there is none, that ends the run too.
+    """
+    reference = picture.reference
+    if reference is None:
+        return Verdict()
+    if reference.finished:
+        return Verdict("platform crossed", over=True, good=True)
+    if reference.state == "DAMP":
+        if "fallen" in reference.reason:
+            advice = (
+                "see the last events and the logs; `surefoot run` begins anew, `--set hw.seed=N` with other noise"
+            )
+            return Verdict(f"the robot fell: {reference.reason}", over=True, advice=advice)
+        if "missing or stale" in reference.reason:
+            advice = "see the health of the estimator above and its log"
+            return Verdict(f"the robot was damped: {reference.reason}", over=True, advice=advice)
+    if seconds and reference.t >= seconds:
+        return Verdict("time is up", over=True, good=True)
+    if reference.state == "STOPPED" and "commanded" not in reference.reason:
+        advice = "`surefoot command backward` takes the robot back, left or right around, forward tries again"
+        return Verdict(f"the robot stopped: {reference.reason}", over=not interactive, advice=advice)
+    return Verdict()
