@@ -39,10 +39,9 @@ class Grader:
     def __init__(self, deployment: Deployment, end_x: float):
         self._end_x = end_x + deployment.load_robot().foot.radius
         self._terrain = deployment.terrain.kind
-        self._goal = deployment.fsm.goal_m
         self._press = PressTest(deployment)
         self._verdict = lru_cache(maxsize=None)(self._collapsible)
-        self.failure, self.passed = "", False
+        self.failure, self.passed, self.touching = "", False, ""
         self._resting_s = 0.0
         self._truth: SimTruth | None = None
         self._estimate: StateEstimate | None = None
@@ -50,7 +49,6 @@ class Grader:
         self._policy: Policy | None = None
         self._command: JointCommand | None = None
         self._start: SimTruth | None = None
-        self._start_error = np.zeros(3)
         self._estimate_error = np.zeros(3)
         self._touched_W: dict[int, np.ndarray] = {}
         self._accepted_W: dict[int, np.ndarray] = {}
@@ -121,7 +119,7 @@ class Grader:
         if tilt > FALL_TILT:
             self.failure = self.failure or "fell"
         elif any(part in truth.body_contact for part in ("trunk", "hip", "thigh")):
-            self.failure = self.failure or f"contact: {truth.body_contact}"
+            self.failure, self.touching = self.failure or "contact", truth.body_contact
         beyond = (truth.p_WF[:, 0] > self._end_x) & (truth.force_W[:, 2] > _CARRIES_N)
         self.passed = self.passed or bool(beyond.all())
         self._watch_holes(truth)
@@ -261,6 +259,7 @@ class Grader:
         return {
             "success": not self.failure,
             "failure": self.failure or None,
+            "body_contact": self.touching or None,
             "distance_m": distance,
             **counts,
             "precision": found / (found + wrong) if found + wrong else None,
