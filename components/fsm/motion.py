@@ -29,7 +29,6 @@ class Motion:
 
     def __init__(self, settings: Fsm):
         self._settings = settings
-        self._sinking = np.zeros(4, bool)
         self.reference = MotionReference(mode=ControlMode.BALANCE, normal_W=_UP)
 
     @property
@@ -47,14 +46,8 @@ class Motion:
         """A foot stands on ground that is not trusted yet."""
         return bool((self.reference.leg_status == LegStatus.PROBING).any())
 
-    def distrust(self, leg: int) -> None:
-        """A stance foot sinks or slips: until it is lifted nobody may hold on to it."""
-        self._sinking[leg] = True
-        self.reference = replace(self.reference, leg_status=self._status())
-
     def stand(self, now: Observation, pose: np.ndarray, seconds: float) -> None:
         """Everything anew: four feet where they are, the base to a pose (6,)."""
-        self._sinking[:] = False
         self.reference = MotionReference(
             mode=ControlMode.BALANCE,
             normal_W=now.estimate.normal_W,
@@ -71,7 +64,7 @@ class Motion:
         self.reference = replace(
             self.reference,
             p_WF=now.estimate.p_WF.copy(),
-            leg_status=self._status(),
+            leg_status=np.zeros(4, int),
             swing_leg=-1,
             support_leg=-1,
             probe_leg=-1,
@@ -80,7 +73,7 @@ class Motion:
     def on_plane(self, now: Observation) -> None:
         """Take over where the feet stand and the local normal."""
         feet, normal = now.estimate.p_WF.copy(), now.estimate.normal_W
-        self.reference = replace(self.reference, p_WF=feet, normal_W=normal, leg_status=self._status())
+        self.reference = replace(self.reference, p_WF=feet, normal_W=normal, leg_status=np.zeros(4, int))
 
     def shift_base(self, now: Observation, pose: np.ndarray, duration: float) -> None:
         """The base moves to a pose (6,) in a straight line."""
@@ -122,8 +115,7 @@ class Motion:
         leg = self.reference.swing_leg
         feet = now.estimate.p_WF.copy()
         feet[leg] = self.reference.swing_to
-        self._sinking[leg] = False
-        status = self._status()
+        status = np.zeros(4, int)
         status[leg] = LegStatus.SWING
         self.reference = replace(
             self.reference,
@@ -171,7 +163,7 @@ class Motion:
 
     def raise_leg(self, leg: int, now: Observation, to: np.ndarray) -> None:
         """LEG_UP: the foot leaves the ground at once and stays in the air at a point (3,)."""
-        status = self._status()
+        status = np.zeros(4, int)
         status[leg] = LegStatus.SWING
         self.reference = replace(
             self.reference,
@@ -186,10 +178,6 @@ class Motion:
             swing_v_from=now.estimate.v_WF[leg].copy(),
             swing_lands=False,
         )
-
-    def _status(self) -> np.ndarray:
-        """(4,) every foot on the ground, those that sink marked."""
-        return np.where(self._sinking, LegStatus.COLLAPSING, LegStatus.STANCE)
 
     def _support(self, leg: int, start: float) -> dict:
         """Eq. (5) from lift-off on, until the leg's probing is complete."""

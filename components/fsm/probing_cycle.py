@@ -471,12 +471,13 @@ class ProbingCycle:
         standing = self.motion.standing
         moved = np.linalg.norm(self._watch.displacement(now.estimate.p_WF, standing), axis=1)
         for leg in np.flatnonzero(standing & (moved > self._settings.collapse_m)):
+            if int(leg) in self._course.lost:
+                continue
             foot = now.estimate.p_WF[leg]
             why = f"{LEGS[leg]} moved {1e2 * moved[leg]:.1f} cm after it was accepted"
             self._report("late_collapse", why, leg=int(leg), p_WF=foot, displacement_m=float(moved[leg]))
             self._watch.anchor_W[leg] = foot - self._drift(now)
             self._course.put_first(int(leg))
-            self.motion.distrust(int(leg))
             if self.motion.in_air or self.state in (State.DETECT_CONTACT, State.PROBE, State.PROBE_AROUND):
                 self._return_safe(now, why)
             else:
