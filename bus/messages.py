@@ -116,7 +116,6 @@ class MotionReference(Message):
     p_WF: np.ndarray = array(4, 3, doc="foot centres of stance legs; last safe foothold otherwise", unit="m")
     leg_status: np.ndarray = array(4, doc="a LegStatus for each leg", dtype="int64")
     normal_W: np.ndarray = array(3, doc="local surface normal")
-    force_max_n: np.ndarray = array(4, doc="largest normal force asked of a foot", unit="N")
 
     swing_leg: int = integer("-1 none", default=-1)
     swing_t0: float = number("lift-off", "s")
