@@ -24,6 +24,7 @@ class Fsm:
 
     # Base shift before a swing.
     base_reference: Literal["polygon", "stride"] = "polygon"  # while probing: inside the triangle, or the stride's
+    stride_s: float = 4.0  # duration of a stride (Sec. II-B.3)
     margin_m: float = 0.04  # alpha of eq. (5)
     margin_extra_m: float = 0.01  # the base is sent this much further inside
     shift_s: float = 0.4  # least duration

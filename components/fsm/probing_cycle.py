@@ -271,7 +271,12 @@ class ProbingCycle:
             motion.postpone(now, settings.swing_s)
 
     def _begin_swing(self, now: Observation) -> None:
-        self.motion.lift_off(now, self._settings.swing_s)
+        settings, reference = self._settings, self.reference
+        if settings.base_reference == "stride":
+            # Fig. 9: the base goes on along its stride and does not wait until the probing is over.
+            target = self._course.base_target(now.estimate.p_WF, reference.normal_W)
+            self.motion.shift_base(now, target, settings.stride_s)
+        self.motion.lift_off(now, settings.swing_s)
         self._enter(State.DETECT_CONTACT, now, f"{LEGS[self._leg]} lifts off")
 
     def _plan_swing(self, start: float, to: np.ndarray, now: Observation) -> None:
@@ -349,9 +354,6 @@ class ProbingCycle:
             point = self._course.around(self._foothold_W, self._around + 1)
             self._plan_hop(begin + press.duration_s + settings.unload_s, point, now)
         self.motion.press(self._leg, begin, np.array(forces))
-        if settings.base_reference == "stride":
-            feet = self.reference.p_WF
-            self.motion.shift_base(now, self._course.base_target(feet, normal), 4.0)
         press.begin(begin)
         where = f"around point {self._around}" if self._around else "foothold"
         peak = press.asked_n(len(press.envelope_W) - 1, normal)
