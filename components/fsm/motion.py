@@ -38,8 +38,8 @@ class Motion:
 
     @property
     def in_air(self) -> bool:
-        """A leg swings."""
-        return bool((self.reference.leg_status == LegStatus.SWING).any())
+        """A leg swings, or looks for the ground."""
+        return bool(np.isin(self.reference.leg_status, (LegStatus.SWING, LegStatus.LANDING)).any())
 
     @property
     def pressing(self) -> bool:

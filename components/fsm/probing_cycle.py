@@ -114,10 +114,10 @@ class ProbingCycle:
 
     def stop(self, now: Observation, reason: str) -> None:
         """Come to rest: at once on four feet, otherwise after the leg is back at its safe foothold."""
-        if self.state in (State.DETECT_CONTACT, State.PROBE, State.PROBE_AROUND, State.LEG_UP):
-            self._return_safe(now, reason)
-        elif self.state == State.RETURN_SAFE:
+        if self.state == State.RETURN_SAFE:
             self._stop_after = reason
+        elif self.motion.in_air or self.motion.pressing:
+            self._return_safe(now, reason)
         elif self.state != State.STOPPED:
             self.motion.plant(now)
             self.stand(now, reason)

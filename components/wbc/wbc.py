@@ -34,7 +34,6 @@ class Wbc(Component):
         robot = deployment.load_robot()
         self._settings = deployment.wbc
         self._legs = LegKinematics(robot)
-        self._reach = robot.nominal.max_leg_length
         self._qp = WholeBodyQp(robot, self._settings)
         self._stand_q = np.tile(robot.nominal.stand_q, 4)
         self._friction = np.array(robot.per_joint("friction"))

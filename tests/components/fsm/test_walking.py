@@ -117,6 +117,19 @@ def test_stop_in_mid_swing_puts_the_foot_back():
     assert (run.truth[-1].force_W[:, 2] > 20.0).all()
 
 
+def test_stop_while_an_alternative_is_planned_puts_the_raised_foot_back():
+    run = Run(Deployment(terrain=Terrain(kind="planks"), fsm=Fsm(crawl_order=(1, 2, 0, 3), probe_around=False)))
+    run.until(20.0, "collapse")
+    run.stack.run(run.stack.t + 5.0, lambda: run.references[-1].state == "OPT")
+    assert run.references[-1].state == "OPT" and run.truth[-1].force_W[1, 2] == 0.0
+    run.stack.command("stop")
+    run.stack.run(run.stack.t + 0.1)
+    assert run.references[-1].state == "RETURN_SAFE"
+    run.stack.run(run.stack.t + 3.0)
+    assert run.references[-1].state == "STOPPED" and run.references[-1].reason == "commanded stop"
+    assert (run.truth[-1].force_W[:, 2] > 20.0).all() and run.tilt() < 0.2
+
+
 def test_an_unknown_command_is_refused_by_name():
     run = Run(Deployment(), "moonwalk")
     refused = run.until(0.1, "refused")
