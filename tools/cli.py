@@ -19,14 +19,15 @@ _LISTEN_S = 1.5
 _RUN = """\
 Start every process of a deployment and show how it goes, on one screen.
 
-The run ends when the platform is crossed, when the robot has fallen or been damped, after --for seconds of
+The run ends when the platform is crossed, when the robot has fallen or lost its estimate, after --for seconds of
 its time, or with Ctrl-C; then every process is ended in order. A robot that finds no safe foothold goes back to
 its last one and stands: on a terminal the run goes on and waits for `surefoot command backward` (or left,
 right, forward, stop) from another one; with --plain, or without a terminal, that ends the run.
 
 With the simulated clock time waits for every process: the run may be slower than real time, and
-`surefoot restart NAME` changes nothing else. With --set run.clock=monotonic it keeps real time; a machine that
-cannot solve the MPC fast enough says so and runs its light profile.
+`surefoot restart NAME` goes on where the process stood (a restarted fsm stands the robot and waits for a
+direction). With --set run.clock=monotonic it keeps real time; a machine that cannot solve the MPC fast
+enough says so and runs its light profile.
 
 exit code: 0 crossed, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
 """

@@ -27,7 +27,7 @@ class Verdict:
 def verdict(picture: Picture, seconds: float, interactive: bool) -> Verdict:
     """The verdict of the moment.
 
-    The run is over when the platform is crossed, the robot has fallen or been damped, or `seconds` of its
+    The run is over when the platform is crossed, the robot has fallen or lost its estimate, or `seconds` of its
     time have passed (0: no limit). A robot that found no safe foothold stands and waits for a person; where
     there is none, that ends the run too.
     """

@@ -130,8 +130,7 @@ def test_probing_falls_short_of_the_asked_force_and_keeps_inside_the_polygon(leg
     nodes = problem.linearise(step.iterate, reference)
     held = step.iterate.force_W[25:, leg, 2]
     assert 0.80 * asked < held.mean() < asked
-    # Of the margin alpha, the capture point may use up most while the base leans; never all.
-    assert problem.violations(nodes)["support_polygon"] < reference.support_margin_m - 0.005
+    assert problem.violations(nodes)["support_polygon"] < reference.support_margin_m - 0.01
 
 
 def test_without_the_polygon_the_force_is_tracked_closer():
