@@ -65,6 +65,11 @@ class Fsm:
     leg_up_s: float = 0.3
     leg_up_below_hip_m: float = 0.27
 
+    # A step is given up ...
+    tilt_hold: float = 0.35  # ... when the trunk tilts this far from the local plane [rad] ...
+    margin_hold_m: float = 0.005  # ... or the centre of mass is less than this inside the other three feet ...
+    unsteady_s: float = 0.04  # ... for this long
+
     # Postures and limits.
     posture_speed: float = 0.8  # of the fastest joint in JOINT mode [rad/s]
     posture_min_s: float = 0.2

@@ -28,7 +28,7 @@ class Course:
         self._first: list[int] = []
 
     def begin(self, p_WF: np.ndarray, heading: float, direction_B: np.ndarray) -> None:
-        """Start from feet (4, 3) in a direction (2,) of the base frame."""
+        """Start from feet (4, 3) in a direction (2,) of the base frame; no leg goes before the others."""
         self.heading = heading
         c, s = np.cos(heading), np.sin(heading)
         self.direction = np.array([[c, -s], [s, c]]) @ direction_B
@@ -37,18 +37,24 @@ class Course:
         self._first.clear()
 
     def put_first(self, leg: int) -> None:
-        """A leg whose foothold is lost goes before all others."""
-        self._first.append(leg)
+        """A leg without a foothold that can be trusted goes before all others, after those that wait already."""
+        if leg not in self._first:
+            self._first.append(leg)
+
+    def settle(self, leg: int) -> None:
+        """A leg has a foothold, or was given up: it need not go first any more."""
+        if leg in self._first:
+            self._first.remove(leg)
 
     @property
-    def lost(self) -> tuple[int, ...]:
-        """Legs that go first because their footholds are lost."""
+    def waiting(self) -> tuple[int, ...]:
+        """Legs that go first, in order."""
         return tuple(self._first)
 
     def next_leg(self, p_WF: np.ndarray, normal_W: np.ndarray) -> int:
         """The next leg of the crawl that has a step to make; -1 when every foot has reached the goal."""
         if self._first:
-            return self._first.pop(0)
+            return self._first[0]
         settings = self._settings
         advance = (self.targets(p_WF, normal_W) - p_WF)[:, :2] @ self.direction
         done = (p_WF - self._origin_W)[:, :2] @ self.direction

@@ -126,10 +126,12 @@ class Fsm(Component):
 
     def _advance(self, now: Observation, inbox: Inbox) -> None:
         if self._posture is Posture.STAND_UP and now.t >= self._joint_t1:
-            self._cycle.stand(now, "standing")
+            self._cycle.stand_up(now)
             self._enter(Posture.STAND, "stood up")
         elif self._posture is Posture.SIT_DOWN and now.t >= self._joint_t1:
             self._damp("sitting")
+        elif self._posture is Posture.STAND:
+            self._cycle.step(now)
         elif self._posture is None:
             for answer in inbox.new("foothold/regions"):
                 self._cycle.regions(answer, now)
@@ -192,13 +194,13 @@ class Fsm(Component):
         )
 
     def _send(self, outbox: Outbox) -> None:
-        cycle = self._cycle
-        if cycle.foothold_request is not None:
-            outbox.publish("foothold/request", cycle.foothold_request)
-            cycle.foothold_request = None
-        if cycle.plan_request is not None:
-            outbox.publish("trajopt/request", cycle.plan_request)
-            cycle.plan_request = None
+        questions = self._cycle.questions
+        if questions.foothold_request is not None:
+            outbox.publish("foothold/request", questions.foothold_request)
+            questions.foothold_request = None
+        if questions.plan_request is not None:
+            outbox.publish("trajopt/request", questions.plan_request)
+            questions.plan_request = None
         for event in self._events:
             outbox.publish("fsm/event", event)
         self._events.clear()

@@ -17,6 +17,7 @@ LAND_AHEAD_S = 0.03
 """While contact is awaited, touch-down stays this far ahead."""
 
 _UP = np.array([0.0, 0.0, 1.0])
+_NONE = -1
 _ALWAYS = 1e9  # end of a constraint that lasts until it is taken away [s]
 
 
@@ -29,51 +30,73 @@ class Motion:
 
     def __init__(self, settings: Fsm):
         self._settings = settings
+        self._ground = np.full(4, LegStatus.STANCE)  # what each leg stands on, or stood on before it was lifted
         self.reference = MotionReference(mode=ControlMode.BALANCE, normal_W=_UP)
 
     @property
-    def standing(self) -> np.ndarray:
-        """(4,) feet on trusted ground."""
+    def trusted(self) -> np.ndarray:
+        """(4,) feet that stand on trusted ground."""
         return self.reference.leg_status == LegStatus.STANCE
+
+    @property
+    def grounded(self) -> np.ndarray:
+        """(4,) legs that stand on trusted ground, or stood on it before they were lifted."""
+        return self._ground == LegStatus.STANCE
+
+    @property
+    def bearing(self) -> np.ndarray:
+        """(4,) feet that stand on ground not known to give way."""
+        return np.isin(self.reference.leg_status, (LegStatus.STANCE, LegStatus.PROBING))
 
     @property
     def in_air(self) -> bool:
         """A leg swings, or looks for the ground."""
         return bool(np.isin(self.reference.leg_status, (LegStatus.SWING, LegStatus.LANDING)).any())
 
-    @property
-    def pressing(self) -> bool:
-        """A foot stands on ground that is not trusted yet."""
-        return bool((self.reference.leg_status == LegStatus.PROBING).any())
+    def trust(self, leg: int) -> None:
+        """The ground under a foot has borne its load."""
+        self._ground[leg] = LegStatus.STANCE
+
+    def distrust(self, leg: int, now: Observation) -> None:
+        """The ground under a foot gives way: until it is lifted nobody may hold on to it, nor draw it back."""
+        self._ground[leg] = LegStatus.COLLAPSING
+        status, feet = self.reference.leg_status.copy(), self.reference.p_WF.copy()
+        status[leg], feet[leg] = LegStatus.COLLAPSING, now.estimate.p_WF[leg]
+        self.reference = replace(self.reference, leg_status=status, p_WF=feet)
 
     def stand(self, now: Observation, pose: np.ndarray, seconds: float) -> None:
-        """Everything anew: four feet where they are, the base to a pose (6,)."""
+        """Four feet where they are, on what they are known to stand on; the base to a pose (6,)."""
         self.reference = MotionReference(
             mode=ControlMode.BALANCE,
             normal_W=now.estimate.normal_W,
             p_WF=now.estimate.p_WF,
-            leg_status=np.zeros(4, int),
+            leg_status=self._ground.copy(),
             base_from=now.pose,
             base_to=pose,
             base_t0=now.t,
             base_t1=now.t + seconds,
         )
 
+    def lean_off(self, leg: int, now: Observation, pose: np.ndarray, seconds: float) -> None:
+        """Four feet where they are, the base to a pose (6,) inside the feet other than `leg`, by eq. (5)."""
+        self.stand(now, pose, seconds)
+        self.reference = replace(self.reference, **self._support(leg, now.t, now.t))
+
     def plant(self, now: Observation) -> None:
         """All feet stand where they are; no constraint of probing acts."""
         self.reference = replace(
             self.reference,
             p_WF=now.estimate.p_WF.copy(),
-            leg_status=np.zeros(4, int),
-            swing_leg=-1,
-            support_leg=-1,
-            probe_leg=-1,
+            leg_status=self._ground.copy(),
+            swing_leg=_NONE,
+            support_leg=_NONE,
+            probe_leg=_NONE,
         )
 
     def on_plane(self, now: Observation) -> None:
-        """Take over where the feet stand and the local normal."""
-        feet, normal = now.estimate.p_WF.copy(), now.estimate.normal_W
-        self.reference = replace(self.reference, p_WF=feet, normal_W=normal, leg_status=np.zeros(4, int))
+        """Take over where the feet stand and the local normal; a leg in the air stays there."""
+        feet = now.estimate.p_WF.copy()
+        self.reference = replace(self.reference, p_WF=feet, normal_W=now.estimate.normal_W)
 
     def shift_base(self, now: Observation, pose: np.ndarray, duration: float) -> None:
         """The base moves to a pose (6,) in a straight line."""
@@ -97,7 +120,7 @@ class Motion:
             swing_v_lift=settings.swing_v_lift,
             swing_v_touch=settings.swing_v_touch,
             swing_lands=True,
-            **self._support(leg, start),
+            **self._support(leg, start, now.t),
         )
 
     def postpone(self, now: Observation, duration: float) -> None:
@@ -107,7 +130,7 @@ class Motion:
             return
         leg = self.reference.swing_leg
         self.reference = replace(
-            self.reference, swing_t0=start, swing_t1=start + duration, **self._support(leg, start)
+            self.reference, swing_t0=start, swing_t1=start + duration, **self._support(leg, start, now.t)
         )
 
     def lift_off(self, now: Observation, duration: float) -> None:
@@ -115,17 +138,17 @@ class Motion:
         leg = self.reference.swing_leg
         feet = now.estimate.p_WF.copy()
         feet[leg] = self.reference.swing_to
-        status = np.zeros(4, int)
+        status = self._ground.copy()
         status[leg] = LegStatus.SWING
         self.reference = replace(
             self.reference,
             p_WF=feet,
             leg_status=status,
-            probe_leg=-1,
+            probe_leg=_NONE,
             swing_from=now.estimate.p_WF[leg].copy(),
             swing_t0=now.t,
             swing_t1=now.t + duration,
-            **self._support(leg, now.t),
+            **self._support(leg, now.t, now.t),
         )
 
     def descend(self, now: Observation) -> None:
@@ -142,12 +165,11 @@ class Motion:
             leg_status=status,
         )
 
-    def touch_down(self, now: Observation, trusted: bool) -> None:
-        """The swinging foot stands where it is."""
-        status = self.reference.leg_status.copy()
-        status[self.reference.swing_leg] = LegStatus.STANCE if trusted else LegStatus.PROBING
+    def touch_down(self, now: Observation, ground: LegStatus) -> None:
+        """The swinging foot stands where it is, on ground of this kind."""
+        self._ground[self.reference.swing_leg] = ground
         feet = now.estimate.p_WF.copy()
-        self.reference = replace(self.reference, p_WF=feet, leg_status=status, swing_leg=-1)
+        self.reference = replace(self.reference, p_WF=feet, leg_status=self._ground.copy(), swing_leg=_NONE)
 
     def press(self, leg: int, start: float, forces_W: np.ndarray) -> None:
         """Eq. (6): forces (n, 3) for their dwell each, after the first, which is the one that acts now."""
@@ -163,12 +185,12 @@ class Motion:
 
     def raise_leg(self, leg: int, now: Observation, to: np.ndarray) -> None:
         """LEG_UP: the foot leaves the ground at once and stays in the air at a point (3,)."""
-        status = np.zeros(4, int)
+        status = self._ground.copy()
         status[leg] = LegStatus.SWING
         self.reference = replace(
             self.reference,
             leg_status=status,
-            probe_leg=-1,
+            probe_leg=_NONE,
             swing_leg=leg,
             swing_t0=now.t,
             swing_t1=now.t + self._settings.leg_up_s,
@@ -179,13 +201,14 @@ class Motion:
             swing_lands=False,
         )
 
-    def _support(self, leg: int, start: float) -> dict:
-        """Eq. (5) from lift-off on, until the leg's probing is complete."""
+    def _support(self, leg: int, start: float, t: float) -> dict:
+        """Eq. (5) from lift-off on, until the leg's probing is complete; once it acts at time t it stays."""
         on = self._settings.support_polygon and self._settings.probing
-        active = self.in_air or self.pressing
+        reference = self.reference
+        acts = reference.support_leg == leg and reference.support_t0 <= t
         return {
-            "support_leg": leg if on else -1,
-            "support_t0": min(start, self.reference.support_t0) if active else start,
+            "support_leg": leg if on else _NONE,
+            "support_t0": min(start, reference.support_t0) if acts else start,
             "support_t1": _ALWAYS,
             "support_margin_m": self._settings.margin_m,
         }

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.bus.messages import StateEstimate
+from surefoot.components.robot_model.rotation import matrix_of_rpy
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,11 @@ class Observation:
     def com_B(self) -> np.ndarray:
         """(3,) centre of mass from the trunk's origin, in the world's axes [m]."""
         return self.com_W - self.estimate.p_WB
+
+    @property
+    def up_W(self) -> np.ndarray:
+        """(3,) the trunk's upward axis in the world."""
+        return matrix_of_rpy(self.rpy)[:, 2]
 
     def normal_force(self, leg: int) -> float:
         """Estimated force along the local normal on a foot [N]."""

@@ -33,12 +33,14 @@ class Probe:
     Attributes:
         envelope_W: (6, 3) by rising normal force [N].
         told: how many forces are over.
+        held_n: the largest normal force held so far [N].
     """
 
     def __init__(self, settings: Fsm):
         self._settings = settings
         self.envelope_W = np.zeros((0, 3))
         self.told = 0
+        self.held_n = 0.0
         self._t0 = 0.0
         self._pressed: list[tuple[float, float]] = []
 
@@ -52,9 +54,13 @@ class Probe:
         """All dwells together."""
         return len(self.envelope_W) * self._settings.dwell_s
 
+    def short(self, normal_W: np.ndarray) -> bool:
+        """The largest force held is too small a share of the envelope's peak."""
+        return self.held_n < self._settings.held_share * float((self.envelope_W @ normal_W).max(initial=0.0))
+
     def begin(self, t0: float) -> None:
         """The first force is asked from t0 on."""
-        self._t0, self._pressed, self.told = t0, [], 0
+        self._t0, self._pressed, self.told, self.held_n = t0, [], 0, 0.0
 
     def asked_n(self, index: int, normal_W: np.ndarray) -> float:
         """Normal component of a force [N]."""
@@ -71,5 +77,6 @@ class Probe:
             window = [force for at, force in self._pressed if end - _HELD_WINDOW_S <= at <= end]
             held, asked = float(np.mean(window)) if window else 0.0, self.asked_n(self.told, normal_W)
             ended.append(Held(self.told, asked, held, held >= settings.held_share * asked))
+            self.held_n = max(self.held_n, held)
             self.told += 1
         return ended

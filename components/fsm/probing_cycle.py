@@ -4,35 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from enum import StrEnum
 
 import numpy as np
 
-from surefoot.bus.messages import FootholdRegions, FootholdRequest, MotionReference, Plan, PlanRequest
+from surefoot.bus.messages import FootholdRegions, LegStatus, MotionReference, Plan
 from surefoot.components.fsm.course import AROUND_POINTS, Course
 from surefoot.components.fsm.foothold_planner import FootholdPlanner
 from surefoot.components.fsm.motion import LAND_AHEAD_S, Motion
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.probe import Held, Probe
+from surefoot.components.fsm.questions import Questions
 from surefoot.components.fsm.stance_watch import StanceWatch
+from surefoot.components.fsm.state import State
 from surefoot.components.fsm.support_triangle import SupportTriangle
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import LEGS, Robot
 
-
-class State(StrEnum):
-    """States of Fig. 6."""
-
-    PRE_OPT = "PRE_OPT"
-    SEND = "SEND"
-    OPT = "OPT"
-    MOVE = "MOVE"
-    DETECT_CONTACT = "DETECT_CONTACT"
-    PROBE = "PROBE"
-    PROBE_AROUND = "PROBE_AROUND"
-    LEG_UP = "LEG_UP"
-    RETURN_SAFE = "RETURN_SAFE"
-    STOPPED = "STOPPED"
+_STAND_S = 1.0
+"""Time to bring the base over the middle of the feet."""
 
 
 class ProbingCycle:
@@ -42,7 +31,7 @@ class ProbingCycle:
         state: of Fig. 6.
         reason: why it was entered.
         motion: what is asked of the MPC and the whole-body controller.
-        foothold_request, plan_request: to publish, or None; the owner takes them away.
+        questions: what it asks of the map and of the trajectory optimisation.
         certified_n: (4,) largest normal force each foothold has really borne [N].
         finished: every foot has advanced by the goal.
     """
@@ -56,23 +45,23 @@ class ProbingCycle:
         self._watch = StanceWatch()
         self._press = Probe(settings)
         self.motion = Motion(settings)
+        self.questions = Questions()
         self.state = State.STOPPED
         self.reason = ""
-        self.foothold_request: FootholdRequest | None = None
-        self.plan_request: PlanRequest | None = None
         self.certified_n = np.zeros(4)
         self.finished = False
-        self._id = 0
         self._leg = -1
         self._candidate = 0
         self._around = 0
+        self._repeated = False
         self._candidates_W = np.zeros((0, 3))
         self._targets_W = np.zeros((4, 3))
         self._foothold_W = np.zeros(3)
         self._support_pose = np.zeros(6)
-        self._safe_W = np.zeros((4, 3))
-        self._stop_after = ""
+        self._halt = ""  # why the robot is to stop once the leg is back
+        self._no_way_back = ""  # why the leg in the air has no ground to go back to
         self._inside_since: float | None = None
+        self._unsteady_since: float | None = None
         self._touch_z = 0.0
         self._entered = 0.0
         self._steps = {
@@ -84,7 +73,7 @@ class ProbingCycle:
             State.PROBE: self._probe,
             State.PROBE_AROUND: self._detect_contact,
             State.LEG_UP: self._leg_up,
-            State.RETURN_SAFE: self._detect_contact,
+            State.RETURN_SAFE: self._go_back,
             State.STOPPED: lambda now: None,
         }
 
@@ -95,28 +84,39 @@ class ProbingCycle:
 
     # What the owner calls -------------------------------------------------------------------------------
 
-    def stand(self, now: Observation, reason: str, seconds: float = 1.0) -> None:
-        """Balance on four feet with the base in their middle."""
-        feet, yaw = now.estimate.p_WF, now.rpy[2]
-        pose = self._planner.pose(self._planner.centre(feet, yaw), feet, now.estimate.normal_W, yaw)
-        self.motion.stand(now, pose, seconds)
-        self._watch.anchor_W[:] = feet
-        self._leg = -1
+    def stand_up(self, now: Observation) -> None:
+        """The robot has come to stand: trust the ground under its feet."""
+        for leg in range(4):
+            self.motion.trust(leg)
+        self._watch.begin(now.estimate.p_WF)
+        self.stand(now, "standing")
+
+    def stand(self, now: Observation, reason: str) -> None:
+        """Balance on four feet with the base in their middle; a foot on bad ground is leant off."""
+        feet, yaw, normal = now.estimate.p_WF, now.rpy[2], now.estimate.normal_W
+        middle = self._planner.pose(self._planner.centre(feet, yaw), feet, normal, yaw)
+        self.motion.stand(now, middle, _STAND_S)
+        for leg in map(int, np.flatnonzero(~self.motion.grounded)):
+            lean = self._planner.support_pose(leg, feet[leg], feet, normal, yaw, now.com_B, np.zeros(3))
+            if lean is not None:
+                self.motion.lean_off(leg, now, lean, _STAND_S)
+        self._leg, self._halt, self._no_way_back = -1, "", ""
         self._enter(State.STOPPED, now, reason)
 
     def walk(self, now: Observation, direction_B: np.ndarray, name: str) -> None:
-        """Start in a direction of the base frame (2,), on four feet."""
-        self._course.begin(now.estimate.p_WF, now.rpy[2], direction_B)
-        self._watch.anchor_W[:] = now.estimate.p_WF
-        self._stop_after = ""
+        """Start in a direction of the base frame (2,); a leg that does not stand safely goes first."""
+        self._course.begin(self._footing(now), now.rpy[2], direction_B)
+        for leg in np.flatnonzero(~self.motion.grounded):
+            self._course.put_first(int(leg))
         self.finished = False
         self._enter(State.PRE_OPT, now, f"commanded {name}")
 
     def stop(self, now: Observation, reason: str) -> None:
-        """Come to rest: at once on four feet, otherwise after the leg is back at its safe foothold."""
+        """Come to rest: at once on four trusted feet, otherwise after the leg is back at its safe foothold."""
         if self.state == State.RETURN_SAFE:
-            self._stop_after = reason
-        elif self.motion.in_air or self.motion.pressing:
+            self._halt = reason
+        elif self.motion.in_air or self.state == State.PROBE:
+            self._halt = reason
             self._return_safe(now, reason)
         elif self.state != State.STOPPED:
             self.motion.plant(now)
@@ -124,17 +124,20 @@ class ProbingCycle:
 
     def regions(self, answer: FootholdRegions, now: Observation) -> None:
         """The map's answer to a foothold request."""
-        if self.state == State.SEND and answer.id == self._id:
+        if self.state == State.SEND and self.questions.answered_by(answer):
             self._on_regions(answer, now)
 
     def plan(self, plan: Plan, now: Observation) -> None:
         """The trajectory optimisation's answer."""
-        if self.state == State.OPT and plan.id == self._id:
+        if self.state == State.OPT and self.questions.answered_by(plan):
             self._on_plan(plan, now)
 
     def step(self, now: Observation) -> None:
         """Advance by one tick."""
-        self._watch_stance(now)
+        self._watch.update(now.estimate.p_WF, self.motion.trusted)
+        if self._settings.probing:
+            self._watch_stance(now)
+            self._watch_balance(now)
         self._steps[self.state](now)
 
     def message(self, t: float) -> MotionReference:
@@ -161,9 +164,8 @@ class ProbingCycle:
     # PRE_OPT, SEND, OPT ---------------------------------------------------------------------------------
 
     def _pre_opt(self, now: Observation) -> None:
-        """Target pose, footholds and alternatives of the next leg; the present feet are stored as safe."""
-        feet, normal = now.estimate.p_WF, now.estimate.normal_W
-        self._safe_W = feet.copy()
+        """Target pose, footholds and alternatives of the next leg."""
+        feet, normal = self._footing(now), now.estimate.normal_W
         leg = self._course.next_leg(feet, normal)
         if leg < 0:
             self.finished = True
@@ -178,13 +180,10 @@ class ProbingCycle:
 
     def _ask(self, now: Observation, reason: str) -> None:
         """SEND: ask the map for the safe regions around the targets."""
-        self._id += 1
         targets = self._targets_W.copy()
         targets[self._leg] = self._candidates_W[self._candidate]
         self._targets_W = targets
-        self.foothold_request = FootholdRequest(
-            t=now.t, valid=True, id=self._id, target_WF=targets, normal_W=self.reference.normal_W
-        )
+        self.questions.ask_regions(now.t, targets, self.reference.normal_W)
         self._enter(State.SEND, now, reason)
 
     def _send(self, now: Observation) -> None:
@@ -202,19 +201,14 @@ class ProbingCycle:
             self._next_candidate(now)
             return
         self._support_pose = pose
-        self.plan_request = PlanRequest(
-            t=now.t,
-            valid=True,
-            id=self._id,
+        self.questions.ask_plan(
+            now.t,
+            answer,
+            normal,
             leg_order=self._course.order_from(leg),
             p_WF=self._feet_now(now),
             lifted=self.motion.in_air,
-            target_WF=answer.foothold_WF,
             base_target=self._course.base_target(feet, normal),
-            normal_W=normal,
-            region_a=answer.region_a,
-            region_b=answer.region_b,
-            region_active=answer.region_active,
         )
         self._foothold_W = foothold.copy()
         self._enter(State.OPT, now, "optimising the stride")
@@ -310,31 +304,32 @@ class ProbingCycle:
         sunk = self._touch_z - foot[2]
         if length <= settings.leg_length_max_m and sunk <= settings.descend_m:
             self.motion.descend(now)
-        elif self.state != State.RETURN_SAFE:
-            why = f"no contact down to {1e2 * sunk:.0f} cm below the plane, leg {length:.3f} m"
+            return
+        why = f"no contact down to {1e2 * sunk:.0f} cm below the plane, leg {length:.3f} m"
+        if self.state == State.RETURN_SAFE:
+            self._no_way_back = f"{LEGS[self._leg]} has no ground to go back to: {why}"
+        else:
             self._event("rejected", why, now, foot)
-            self._begin_leg_up(now, why)
+        self._begin_leg_up(now, why)
 
     def _touched(self, now: Observation) -> None:
         """Contact: the foot stands where it is, and its position is stored for the collapse test."""
         leg, foot = self._leg, now.estimate.p_WF[self._leg]
         off = 1e2 * (foot - self.reference.swing_to)[:2] @ self._course.direction
         self._event("contact", f"{now.normal_force(leg):.0f} N, {off:+.1f} cm along the walk", now, foot)
-        self.motion.touch_down(now, self.state == State.RETURN_SAFE or not self._settings.probing)
-        self._watch.anchor_W[leg] = foot - self._drift(now)
+        self._watch.touched(leg, foot)
+        self._repeated = False
         if self.state == State.RETURN_SAFE:
-            self._returned(now)
-        elif not self._settings.probing:
+            self.motion.touch_down(now, LegStatus.COLLAPSING if self._watch.sunk[leg] else LegStatus.STANCE)
+            self._returned(now, self.reason)
+            return
+        self.motion.touch_down(now, LegStatus.PROBING if self._settings.probing else LegStatus.STANCE)
+        if not self._settings.probing:
             self._accept(now, "contact; probing is off")
         elif self._around > AROUND_POINTS:
             self._accept(now, "all forces were borne here and around")
         else:
             self._begin_probe(now)
-
-    def _drift(self, now: Observation) -> np.ndarray:
-        """(3,) what the estimate of the standing feet has drifted since they were trusted [m]."""
-        moved = (now.estimate.p_WF - self._watch.anchor_W)[self.motion.standing]
-        return np.median(moved, axis=0) if len(moved) >= 3 else np.zeros(3)
 
     # PROBE, PROBE_AROUND --------------------------------------------------------------------------------
 
@@ -356,22 +351,27 @@ class ProbingCycle:
         self.motion.press(self._leg, begin, np.array(forces))
         press.begin(begin)
         where = f"around point {self._around}" if self._around else "foothold"
+        where += ", again: the force fell short" if self._repeated else ""
         peak = press.asked_n(len(press.envelope_W) - 1, normal)
         self._enter(State.PROBE, now, f"{where}, up to {peak:.0f} N")
 
     def _probe(self, now: Observation) -> None:
-        settings, leg = self._settings, self._leg
-        moved = float(np.linalg.norm(self._watch.displacement(now.estimate.p_WF, self.motion.standing)[leg]))
+        settings, leg, press = self._settings, self._leg, self._press
+        moved = self._watch.displacement(now.estimate.p_WF)[leg]
         if moved > settings.collapse_m:
             self._collapsed(now, moved)
             return
-        for held in self._press.update(now.t, now.normal_force(leg), self.reference.normal_W):
+        for held in press.update(now.t, now.normal_force(leg), self.reference.normal_W):
             self._force_held(now, held, moved)
-        if self._press.over:
-            if not settings.probe_around:
-                self._accept(now, "all forces were borne")
-            elif now.t >= self.reference.swing_t0 - 1e-9:
-                self._next_point(now)
+        if not press.over:
+            return
+        if press.short(self.reference.normal_W) and not self._repeated:
+            self._repeated = True
+            self._begin_probe(now)
+        elif not settings.probe_around:
+            self._accept(now, "all forces were borne")
+        elif now.t >= self.reference.swing_t0 - 1e-9:
+            self._next_point(now)
 
     def _force_held(self, now: Observation, held: Held, moved: float) -> None:
         if not self._around:
@@ -398,14 +398,16 @@ class ProbingCycle:
 
     def _accept(self, now: Observation, reason: str) -> None:
         """The foothold is safe: only now does it replace the old one."""
-        leg = self._leg
-        self._safe_W[leg] = now.estimate.p_WF[leg]
+        leg, foot = self._leg, now.estimate.p_WF[self._leg]
+        self._watch.trust(leg, foot)
+        self.motion.trust(leg)
+        self._course.settle(leg)
         self.motion.plant(now)
-        self._event("accepted", reason, now, now.estimate.p_WF[leg], held_n=float(self.certified_n[leg]))
-        if self._stop_after:
-            self.stand(now, self._stop_after)
-        else:
-            self._enter(State.PRE_OPT, now, f"{LEGS[leg]} stands safely")
+        peak = float((self._press.envelope_W @ self.reference.normal_W).max(initial=0.0))
+        if self._settings.probing and self.certified_n[leg] < self._settings.held_share * peak:
+            reason = f"certified for {self.certified_n[leg]:.0f} of {peak:.0f} N only"
+        self._event("accepted", reason, now, foot, held_n=float(self.certified_n[leg]))
+        self._enter(State.PRE_OPT, now, f"{LEGS[leg]} stands safely")
 
     # Collapse, LEG_UP, RETURN_SAFE ----------------------------------------------------------------------
 
@@ -430,63 +432,139 @@ class ProbingCycle:
         self._enter(State.LEG_UP, now, reason)
 
     def _leg_up(self, now: Observation) -> None:
-        if now.t >= self.reference.swing_t1:
-            if self._stop_after:
-                self._return_safe(now, self._stop_after)
-            else:
-                self._next_candidate(now)
+        if now.t < self.reference.swing_t1:
+            return
+        if self._no_way_back:
+            self._rest(now, self._no_way_back)
+        else:
+            self._next_candidate(now)
 
     def _next_candidate(self, now: Observation) -> None:
         """The next alternative, or back to the last safe foothold when there is none."""
         self._candidate += 1
         self._around = 0
+        if not self.motion.in_air:
+            self.motion.plant(now)  # the swing that was planned must not begin
         if self._candidate < len(self._candidates_W):
             self._ask(now, f"alternative {self._candidate} of {len(self._candidates_W) - 1}")
-        elif self.motion.in_air:
-            self._return_safe(now, "no safe foothold among the alternatives")
+            return
+        self._course.settle(self._leg)
+        why = "no safe foothold among the alternatives"
+        if self.motion.in_air:
+            self._return_safe(now, why)
         else:
-            self._returned(now)
+            self._returned(now, why)
 
     def _return_safe(self, now: Observation, reason: str) -> None:
-        """The leg goes back to where it stood."""
-        if not self._stop_after:
-            self._stop_after = reason
-        self._plan_swing(now.t, self._safe_W[self._leg], now)
-        self.motion.lift_off(now, self._settings.swing_s)
+        """The leg goes back to where it stood; a foot that presses is unloaded first, and the MPC knows ahead.
+
+        A foot that leaves the ground under load throws the base over.
+        """
+        settings, leg, safe_W = self._settings, self._leg, self._watch.safe(self._leg)
+        if self.motion.in_air:
+            self._plan_swing(now.t, safe_W, now)
+            self.motion.lift_off(now, settings.swing_s)
+        else:
+            normal = self.reference.normal_W
+            forces = np.array([now.normal_force(leg) * normal, settings.unload_n * normal])
+            self.motion.press(leg, now.t, forces)
+            self._plan_swing(now.t + settings.unload_s, safe_W, now)
         self._enter(State.RETURN_SAFE, now, reason)
 
-    def _returned(self, now: Observation) -> None:
-        reason, self._stop_after = self._stop_after or "no safe foothold among the alternatives", ""
+    def _go_back(self, now: Observation) -> None:
+        if self.motion.in_air:
+            self._detect_contact(now)
+        elif now.t >= self.reference.swing_t0:
+            self.motion.lift_off(now, self._settings.swing_s)
+
+    def _returned(self, now: Observation, reason: str) -> None:
+        """The leg is back: stop as was asked, or go on with a leg whose ground has given way."""
         self.motion.plant(now)
-        if self._course.lost:
-            self._enter(State.PRE_OPT, now, f"{LEGS[self._course.lost[0]]} lost its foothold")
-            return
-        self.stand(now, reason)
+        waiting = self._course.waiting
+        if waiting and not self._halt:
+            self._enter(State.PRE_OPT, now, f"{LEGS[waiting[0]]} lost its foothold")
+        else:
+            self._rest(now, self._halt or reason)
+
+    def _rest(self, now: Observation, reason: str) -> None:
+        """STOPPED until a new direction is commanded: on four feet, or on three with the leg in the air."""
+        if self.motion.in_air:
+            self._halt = self._no_way_back = ""
+            self._enter(State.STOPPED, now, reason)
+        else:
+            self.stand(now, reason)
         self._report("stopped", reason)
 
-    # Stance feet ----------------------------------------------------------------------------------------
+    # Stance feet and balance ----------------------------------------------------------------------------
 
     def _watch_stance(self, now: Observation) -> None:
-        """A stance foot that sinks or slips later is a collapse too: it is the next to be moved."""
-        if not self._settings.probing or self.state == State.STOPPED:
-            return
-        standing = self.motion.standing
-        moved = np.linalg.norm(self._watch.displacement(now.estimate.p_WF, standing), axis=1)
-        for leg in np.flatnonzero(standing & (moved > self._settings.collapse_m)):
-            if int(leg) in self._course.lost:
-                continue
-            foot = now.estimate.p_WF[leg]
-            why = f"{LEGS[leg]} moved {1e2 * moved[leg]:.1f} cm after it was accepted"
-            self._report("late_collapse", why, leg=int(leg), p_WF=foot, displacement_m=float(moved[leg]))
-            self._watch.anchor_W[leg] = foot - self._drift(now)
-            self._course.put_first(int(leg))
-            if self.motion.in_air or self.state in (State.DETECT_CONTACT, State.PROBE, State.PROBE_AROUND):
+        """A foot that sinks or slips after it was trusted is a collapse too: it is the next to be moved."""
+        watched = self.motion.bearing
+        if self.state in (State.PROBE, State.RETURN_SAFE) and self._leg >= 0:
+            watched[self._leg] = False  # `_probe` judges it, or it is on its way
+        moved = self._watch.displacement(now.estimate.p_WF)
+        for leg in np.flatnonzero(watched & (moved > self._settings.collapse_m)):
+            self._gave_way(int(leg), float(moved[leg]), now)
+
+    def _gave_way(self, leg: int, moved: float, now: Observation) -> None:
+        foot = now.estimate.p_WF[leg]
+        why = f"{LEGS[leg]} moved {1e2 * moved:.1f} cm after it was accepted"
+        self._report("late_collapse", why, leg=leg, p_WF=foot.copy(), displacement_m=moved)
+        self._watch.sunk[leg] |= self.motion.trusted[leg]
+        self.motion.distrust(leg, now)
+        self._course.put_first(leg)
+        if self.motion.in_air:
+            if self.state == State.STOPPED:
+                self._halt = why
+            if self.state != State.RETURN_SAFE:
+                self._return_safe(now, why)
+        elif self.state == State.STOPPED:
+            self.stand(now, why)
+        elif self.state != State.RETURN_SAFE:
+            if self.state == State.PROBE:
+                # Too few feet to lift this one now: it stays, and is probed again when its turn comes.
+                self._course.put_first(self._leg)
+            self.motion.plant(now)
+            self._enter(State.PRE_OPT, now, why)
+
+    def _watch_balance(self, now: Observation) -> None:
+        """A base that tilts or leaves the support triangle while a leg is moved ends the step."""
+        settings = self._settings
+        resting = self.state in (State.RETURN_SAFE, State.STOPPED)
+        busy = self.state == State.PROBE or (self.motion.in_air and not resting)
+        why = self._unsteady(now) if busy else ""
+        if not why:
+            self._unsteady_since = None
+        elif self._unsteady_since is None:
+            self._unsteady_since = now.t
+        elif now.t - self._unsteady_since >= settings.unsteady_s:
+            self._unsteady_since = None
+            self._event("rejected", why, now, now.estimate.p_WF[self._leg])
+            if self.motion.in_air:
+                self._halt = why
                 self._return_safe(now, why)
             else:
                 self.motion.plant(now)
-                self._enter(State.PRE_OPT, now, why)
+                self._rest(now, why)
+
+    def _unsteady(self, now: Observation) -> str:
+        settings = self._settings
+        tilt = float(np.arccos(np.clip(now.up_W @ self.reference.normal_W, -1.0, 1.0)))
+        if tilt > settings.tilt_hold:
+            return f"base tilted by {tilt:.2f} rad from the ground, limit {settings.tilt_hold} rad"
+        margin = SupportTriangle(self.reference.p_WF, self._leg).margin(now.com_W[:2])
+        if settings.support_polygon and margin < settings.margin_hold_m:
+            return f"centre of mass {1e3 * margin:.0f} mm inside, limit {1e3 * settings.margin_hold_m:.0f} mm"
+        return ""
 
     # ----------------------------------------------------------------------------------------------------
+
+    def _footing(self, now: Observation) -> np.ndarray:
+        """(4, 3) the feet, with one that is in the air at its safe foothold."""
+        feet = now.estimate.p_WF.copy()
+        if self.motion.in_air:
+            feet[self._leg] = self._watch.safe(self._leg)
+        return feet
 
     def _feet_now(self, now: Observation) -> np.ndarray:
         """(4, 3) where the plan starts from: the feet that stand, and the one in the air where it is."""

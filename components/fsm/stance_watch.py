@@ -1,4 +1,4 @@
-"""How far each foot has moved on the ground since it was trusted."""
+"""How far each foot has moved on the ground since it was trusted, and where it could go back to."""
 
 from __future__ import annotations
 
@@ -8,17 +8,44 @@ import numpy as np
 class StanceWatch:
     """Displacement of the feet from their anchors, as the feet that carry the robot see it.
 
-    The median displacement of the stance feet is the drift of the estimate, not of the ground, and is taken
-    off: one foot that sinks or slips stands out against the others.
+    The median displacement of the trusted feet is the drift of the estimate, not of the ground, and is taken
+    off: one foot that sinks or slips stands out against the others. With fewer than three trusted feet
+    nobody can tell the two apart, and the last drift stands.
 
     Attributes:
-        anchor_W: (4, 3) position of each foot when it was last trusted, or first touched while probed [m].
+        drift_W: (3,) what the estimate has drifted since the anchors were first set [m].
+        sunk: (4,) feet whose safe foothold has given way.
     """
 
     def __init__(self) -> None:
-        self.anchor_W = np.zeros((4, 3))
+        self.drift_W = np.zeros(3)
+        self.sunk = np.zeros(4, bool)
+        self._anchor_W = np.zeros((4, 3))
+        self._safe_W = np.zeros((4, 3))
 
-    def displacement(self, p_WF: np.ndarray, stance: np.ndarray) -> np.ndarray:
-        """(4, 3) displacement of each foot in the world [m]; `stance` (4,) tells the feet that carry."""
-        moved = p_WF - self.anchor_W
-        return moved - np.median(moved[stance], axis=0) if stance.sum() >= 3 else moved
+    def begin(self, p_WF: np.ndarray) -> None:
+        """Trust all feet (4, 3) where they are."""
+        self.drift_W[:], self.sunk[:] = 0.0, False
+        self._anchor_W[:] = self._safe_W[:] = p_WF
+
+    def update(self, p_WF: np.ndarray, trusted: np.ndarray) -> None:
+        """Take in feet (4, 3) and which of them stand on trusted ground (4,)."""
+        if trusted.sum() >= 3:
+            self.drift_W = np.median((p_WF - self._anchor_W)[trusted], axis=0)
+
+    def touched(self, leg: int, p_F: np.ndarray) -> None:
+        """A foot has found ground at a point (3,): from there its displacement counts."""
+        self._anchor_W[leg] = p_F - self.drift_W
+
+    def trust(self, leg: int, p_F: np.ndarray) -> None:
+        """A foothold (3,) has borne its load: it replaces the leg's last safe one."""
+        self._anchor_W[leg] = self._safe_W[leg] = p_F - self.drift_W
+        self.sunk[leg] = False
+
+    def safe(self, leg: int) -> np.ndarray:
+        """(3,) the leg's last safe foothold, in the world as it is estimated now [m]."""
+        return self._safe_W[leg] + self.drift_W
+
+    def displacement(self, p_WF: np.ndarray) -> np.ndarray:
+        """(4,) how far the feet (4, 3) are from where they were trusted or touched down [m]."""
+        return np.linalg.norm(p_WF - self._anchor_W - self.drift_W, axis=1)

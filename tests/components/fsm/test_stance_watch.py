@@ -5,23 +5,42 @@ import numpy as np
 from surefoot.components.fsm.stance_watch import StanceWatch
 
 FEET = np.array([[0.24, 0.14, 0.0], [0.24, -0.14, 0.0], [-0.24, 0.14, 0.0], [-0.24, -0.14, 0.0]])
+ALL = np.ones(4, bool)
 
 
 def watch():
     result = StanceWatch()
-    result.anchor_W[:] = FEET
+    result.begin(FEET)
     return result
 
 
 def test_a_drift_of_all_feet_is_no_displacement():
-    moved = watch().displacement(FEET + [0.02, -0.03, 0.05], np.ones(4, bool))
-    np.testing.assert_allclose(moved, 0.0, atol=1e-12)
+    drifting, feet = watch(), FEET + [0.02, -0.03, 0.05]
+    drifting.update(feet, ALL)
+    np.testing.assert_allclose(drifting.displacement(feet), 0.0, atol=1e-12)
 
 
 def test_one_sinking_foot_is_seen_whether_it_stands_or_probes():
     feet = FEET + [0.01, 0.0, 0.0]
     feet[1] -= [0.0, 0.0, 0.035]
-    for stance in (np.ones(4, bool), np.array([True, False, True, True])):
-        moved = watch().displacement(feet, stance)
-        np.testing.assert_allclose(moved[1], [0.0, 0.0, -0.035], atol=1e-12)
-        np.testing.assert_allclose(np.delete(moved, 1, axis=0), 0.0, atol=1e-12)
+    for trusted in (ALL, np.array([True, False, True, True])):
+        sinking = watch()
+        sinking.update(feet, trusted)
+        np.testing.assert_allclose(sinking.displacement(feet), [0.0, 0.035, 0.0, 0.0], atol=1e-12)
+
+
+def test_with_two_trusted_feet_the_last_drift_stands():
+    held = watch()
+    held.update(FEET + [0.02, 0.0, 0.0], ALL)
+    held.update(FEET + [0.03, 0.0, 0.0], np.array([True, False, False, True]))
+    np.testing.assert_allclose(held.displacement(FEET + [0.03, 0.0, 0.0]), 0.01, atol=1e-12)
+
+
+def test_a_safe_foothold_is_replaced_only_by_a_trusted_one_and_drifts_with_the_estimate():
+    moving = watch()
+    moving.touched(2, FEET[2] + [0.1, 0.0, 0.0])
+    np.testing.assert_allclose(moving.safe(2), FEET[2])
+    moving.update(FEET + [0.01, 0.0, 0.0], np.array([True, True, False, True]))
+    np.testing.assert_allclose(moving.safe(2), FEET[2] + [0.01, 0.0, 0.0])
+    moving.trust(2, FEET[2] + [0.1, 0.0, 0.0])
+    np.testing.assert_allclose(moving.safe(2), FEET[2] + [0.1, 0.0, 0.0])

@@ -1,0 +1,45 @@
+"""What the state machine asks of the map and of the trajectory optimisation, and which answers are its own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from surefoot.bus.messages import FootholdRegions, FootholdRequest, Plan, PlanRequest
+
+
+class Questions:
+    """Requests to publish, each with an id by which its answer is known: an answer to an older one is ignored.
+
+    Attributes:
+        foothold_request, plan_request: to publish, or None; the owner takes them away.
+    """
+
+    def __init__(self) -> None:
+        self.foothold_request: FootholdRequest | None = None
+        self.plan_request: PlanRequest | None = None
+        self._id = 0
+
+    def ask_regions(self, t: float, target_WF: np.ndarray, normal_W: np.ndarray) -> None:
+        """SEND: the safe regions around targets (4, 3) [m]."""
+        self._id += 1
+        self.foothold_request = FootholdRequest(
+            t=t, valid=True, id=self._id, target_WF=target_WF, normal_W=normal_W
+        )
+
+    def ask_plan(self, t: float, answer: FootholdRegions, normal_W: np.ndarray, **figures) -> None:
+        """OPT: a stride to the footholds of an answer; `figures` are the other fields of a `PlanRequest`."""
+        self.plan_request = PlanRequest(
+            t=t,
+            valid=True,
+            id=self._id,
+            target_WF=answer.foothold_WF,
+            region_a=answer.region_a,
+            region_b=answer.region_b,
+            region_active=answer.region_active,
+            normal_W=normal_W,
+            **figures,
+        )
+
+    def answered_by(self, message: FootholdRegions | Plan) -> bool:
+        """Whether a message answers the last question."""
+        return message.id == self._id

@@ -1,0 +1,182 @@
+"""The paths of Fig. 6 that a good walk never takes: stops, late collapses, no way back, time-outs."""
+
+import numpy as np
+import pytest
+from puppet import Puppet
+
+from surefoot.bus.messages import LegStatus
+from surefoot.components.fsm.support_triangle import SupportTriangle
+from surefoot.config.fsm import Fsm
+
+STANCE, SWING, PROBING, COLLAPSING = LegStatus.STANCE, LegStatus.SWING, LegStatus.PROBING, LegStatus.COLLAPSING
+RL, FL, RR, FR = 2, 0, 3, 1
+
+
+def test_the_crawl_probes_leg_after_leg():
+    puppet = Puppet()
+    assert puppet.run(20.0, lambda: len(puppet.kinds("accepted")) == 4)
+    assert [event[2]["leg"] for event in puppet.kinds("accepted")] == [RL, FL, RR, FR]
+    assert not puppet.kinds("late_collapse") and not puppet.kinds("rejected")
+
+
+@pytest.mark.parametrize(("state", "unanswered"), [("SEND", ("regions",)), ("OPT", ("plan",)), ("MOVE", ())])
+def test_stop_on_four_feet_stands_at_once(state, unanswered):
+    puppet = Puppet()
+    puppet.unanswered = unanswered
+    puppet.reach(state)
+    puppet.cycle.stop(puppet.observe(), "commanded stop")
+    assert puppet.cycle.state == "STOPPED" and puppet.status == [STANCE] * 4
+    assert puppet.cycle.reference.swing_leg == -1 and puppet.cycle.reference.support_leg == -1
+
+
+@pytest.mark.parametrize("state", ["DETECT_CONTACT", "PROBE", "PROBE_AROUND"])
+def test_stop_with_a_leg_under_way_puts_it_back_where_it_was_safe(state):
+    puppet = Puppet(Fsm())
+    before = puppet.feet.copy()
+    puppet.reach(state)
+    puppet.run(0.1)
+    puppet.cycle.stop(puppet.observe(), "commanded stop")
+    puppet.reach("STOPPED")
+    assert puppet.cycle.reason == "commanded stop" and puppet.status == [STANCE] * 4
+    np.testing.assert_allclose(puppet.feet[RL], before[RL], atol=2e-3)
+
+
+def test_a_foot_that_presses_is_unloaded_before_it_goes_back():
+    puppet = Puppet()
+    puppet.reach("PROBE")
+    puppet.run(0.4)
+    puppet.cycle.stop(puppet.observe(), "commanded stop")
+    asked = puppet.cycle.reference.probe_force_W
+    assert puppet.status[RL] == PROBING and puppet.cycle.reference.swing_t0 > puppet.t + 0.05
+    assert asked[-1] @ [0, 0, 1] == pytest.approx(puppet.settings.unload_n)
+    puppet.run(0.07)
+    assert puppet.status[RL] == PROBING and puppet.observe().normal_force(RL) < 15.0
+    assert puppet.run(0.1, lambda: puppet.status[RL] == SWING)
+
+
+def test_a_stop_is_not_forgotten_when_another_foot_sinks_meanwhile():
+    puppet = Puppet()
+    puppet.reach("DETECT_CONTACT")
+    puppet.cycle.stop(puppet.observe(), "commanded stop")
+    puppet.sunk[FR] = 0.04
+    puppet.reach("STOPPED")
+    assert puppet.cycle.reason == "commanded stop" and puppet.kinds("late_collapse")
+    assert puppet.status[FR] == COLLAPSING and puppet.cycle.reference.support_leg == FR
+
+
+def test_a_stance_foot_that_sinks_while_another_swings_is_the_next_to_be_moved():
+    puppet = Puppet()
+    puppet.reach("DETECT_CONTACT")
+    puppet.sunk[FR] = 0.035
+    puppet.tick()
+    assert puppet.cycle.state == "RETURN_SAFE" and puppet.status[FR] == COLLAPSING
+    assert puppet.run(2.0, lambda: puppet.cycle.state == "SEND")
+    assert puppet.status[FR] == COLLAPSING and puppet.status[RL] == STANCE
+    assert puppet.run(8.0, lambda: bool(puppet.kinds("accepted")))
+    assert puppet.kinds("accepted")[0][2]["leg"] == FR and puppet.status == [STANCE] * 4
+    assert len(puppet.kinds("late_collapse")) == 1
+
+
+def test_a_foot_under_test_stays_down_when_another_sinks_and_is_tested_again():
+    puppet = Puppet()
+    puppet.reach("PROBE")
+    puppet.run(0.3)
+    puppet.sunk[FR] = 0.035
+    puppet.tick()
+    assert puppet.status[RL] == PROBING and puppet.status[FR] == COLLAPSING
+    assert puppet.run(15.0, lambda: len(puppet.kinds("accepted")) == 2)
+    assert [event[2]["leg"] for event in puppet.kinds("accepted")] == [FR, RL]
+
+
+def test_drift_of_the_estimate_is_no_collapse_even_with_two_trusted_feet():
+    puppet = Puppet()
+    puppet.reach("DETECT_CONTACT")
+    puppet.feet += [0.028, 0.0, 0.0]  # near the limit already: what is left of it would not do
+    puppet.tick()
+    puppet.sunk[FR] = 0.04
+    puppet.tick()
+    puppet.feet += [0.004, 0.0, 0.0]
+    puppet.run(2.0)
+    assert [event[2]["leg"] for event in puppet.kinds("late_collapse")] == [FR]
+
+
+def test_a_lost_leg_that_finds_no_ground_anywhere_ends_the_walk():
+    puppet = Puppet(Fsm(probe_around=False, alternatives=0))
+    puppet.reach("DETECT_CONTACT")
+    puppet.sunk[FR] = 0.035
+    puppet.run(3.0, lambda: puppet.cycle.state == "SEND")
+    puppet.ground_z[FR] = -0.3
+    assert puppet.run(6.0, lambda: bool(puppet.kinds("stopped")))
+    assert puppet.kinds("rejected") and "no ground to go back to" in puppet.cycle.reason
+
+
+def test_without_ground_to_go_back_to_the_robot_rests_on_three_feet():
+    puppet = Puppet()
+    puppet.reach("DETECT_CONTACT")
+    puppet.run(0.2)
+    puppet.ground_z[RL] = -1.0
+    puppet.cycle.stop(puppet.observe(), "commanded stop")
+    puppet.reach("STOPPED")
+    assert "no ground to go back to" in puppet.cycle.reason
+    assert puppet.status[RL] == SWING and puppet.cycle.reference.support_leg == RL
+    assert puppet.feet[RL, 2] > -0.15
+    puppet.run(1.0)
+    puppet.ground_z[RL] = 0.0265
+    puppet.cycle.walk(puppet.observe(), np.array([1.0, 0.0]), "forward")
+    assert puppet.run(8.0, lambda: bool(puppet.kinds("accepted")))
+    assert puppet.kinds("accepted")[0][2]["leg"] == RL
+
+
+def test_a_foot_that_sinks_while_the_robot_rests_is_leant_off_and_moved_first():
+    puppet = Puppet(forward=False)
+    puppet.run(1.2)
+    puppet.sunk[FL] = 0.04
+    puppet.run(1.5)
+    margin = puppet.settings.margin_m + puppet.settings.margin_extra_m
+    assert puppet.cycle.state == "STOPPED" and puppet.status[FL] == COLLAPSING
+    assert SupportTriangle(puppet.feet, FL).margin(puppet.pose[:2]) >= margin - 1e-6
+    puppet.cycle.walk(puppet.observe(), np.array([1.0, 0.0]), "forward")
+    assert puppet.run(8.0, lambda: bool(puppet.kinds("accepted")))
+    assert puppet.kinds("accepted")[0][2]["leg"] == FL
+
+
+def test_a_base_that_does_not_arrive_leaves_no_swing_planned():
+    puppet = Puppet()
+    puppet.reach("MOVE")
+    pose = puppet.pose.copy()
+    while puppet.cycle.state == "MOVE":
+        puppet.pose = pose
+        puppet.t += 0.004
+        puppet.cycle.step(puppet.observe())
+        assert puppet.t < 10.0
+    assert puppet.kinds("rejected") and puppet.cycle.state == "SEND"
+    assert puppet.cycle.reference.swing_leg == -1 and puppet.cycle.reference.support_leg == -1
+
+
+def test_a_base_that_tilts_ends_the_step():
+    puppet = Puppet()
+    puppet.reach("DETECT_CONTACT")
+    puppet.tilt = 0.4
+    puppet.run(0.1)
+    assert puppet.cycle.state == "RETURN_SAFE" and "0.40 rad" in puppet.cycle.reason
+    puppet.tilt = 0.0
+    puppet.reach("STOPPED")
+    assert "tilted" in puppet.cycle.reason
+
+
+def test_a_force_that_falls_short_is_asked_once_more_then_certified_as_far_as_it_went():
+    puppet = Puppet()
+    puppet.weak = 0.6
+    assert puppet.run(8.0, lambda: bool(puppet.kinds("accepted")))
+    probes = [event for event in puppet.kinds("transition") if event[3] == "PROBE"]
+    assert len(probes) == 2 and "again" in probes[1][1]
+    _kind, reason, figures, _state = puppet.kinds("accepted")[0]
+    assert figures["held_n"] == pytest.approx(60.0, abs=1.0) and "60 of 100 N" in reason
+
+
+@pytest.mark.parametrize(("question", "topic"), [("regions", "foothold/regions"), ("plan", "trajopt/plan")])
+def test_an_unanswered_question_is_asked_again(question, topic):
+    puppet = Puppet()
+    puppet.unanswered = (question,)
+    puppet.run(2.2)
+    assert any(f"no answer on {topic}" in event[1] for event in puppet.kinds("transition"))
