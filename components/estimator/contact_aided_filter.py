@@ -33,6 +33,7 @@ class ContactAidedFilter:
         bias_gyro, bias_acc: (3,).
         P: (27, 27) error covariance.
         omega_B: (3,) angular velocity without bias [rad/s].
+        known: (4,) feet whose position is a state of its own, not the base's.
     """
 
     def __init__(self, settings: Estimator):
@@ -47,7 +48,7 @@ class ContactAidedFilter:
         self._H = np.zeros((12, SIZE))
         self._H[:, _P] = -np.tile(_EYE3, (4, 1))
         self._H[:, _FEET : _FEET + 12] = np.eye(12)
-        self._known = np.zeros(4, bool)
+        self.known = np.zeros(4, bool)
         self._F = np.eye(SIZE)
         self._gravity_W = np.array([0.0, 0.0, -GRAVITY])
 
@@ -73,7 +74,7 @@ class ContactAidedFilter:
         std[_TH] = [settings.tilt_start, settings.tilt_start, 1e-4]
         std[_BG], std[_BA] = settings.gyro_bias_start, settings.acc_bias_start
         self.P[:] = np.diag(std**2)
-        self._known[:] = False
+        self.known[:] = False
 
     def predict(self, gyro_B: np.ndarray, acc_B: np.ndarray, dt: float) -> None:
         """Integrate one IMU sample over `dt` [s]."""
@@ -145,7 +146,7 @@ class ContactAidedFilter:
             self.P *= 0.5
             self._inject(K @ residual.ravel()[rows])
         for leg in np.flatnonzero(stance & ~used):
-            self._known[leg] = False
+            self.known[leg] = False
             self._forget(leg, self.R_WB @ p_BF[leg])
         return used
 
@@ -160,10 +161,10 @@ class ContactAidedFilter:
     def _place_feet(self, arm_W: np.ndarray, stance: np.ndarray) -> None:
         for leg in range(4):
             if not stance[leg]:
-                self._known[leg] = False
+                self.known[leg] = False
                 self._forget(leg, arm_W[leg])
-            elif not self._known[leg]:
-                self._known[leg] = True
+            elif not self.known[leg]:
+                self.known[leg] = True
                 self._begin_stance(leg, arm_W[leg])
 
     def _forget(self, leg: int, arm_W: np.ndarray) -> None:

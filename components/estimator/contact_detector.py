@@ -13,30 +13,32 @@ class ContactDetector:
 
     Attributes:
         contact: (4,) present verdicts.
+        hits: (4,) successive looks that contradict them.
+        cycle: calls of `update` so far.
     """
 
     def __init__(self, settings: Estimator):
         self._settings = settings
         self.contact = np.zeros(4, bool)
-        self._hits = np.zeros(4, np.int64)
-        self._cycle = 0
+        self.hits = np.zeros(4, np.int64)
+        self.cycle = 0
 
     def update(self, normal_force_n: np.ndarray) -> np.ndarray:
         """Take in one cycle's normal forces (4,) [N]; returns (4,) contact."""
-        self._cycle += 1
-        if self._cycle % self._settings.contact_every:
+        self.cycle += 1
+        if self.cycle % self._settings.contact_every:
             return self.contact
         settings = self._settings
         contradicts = np.where(
             self.contact, normal_force_n < settings.contact_off_n, normal_force_n > settings.contact_on_n
         )
-        self._hits = np.where(contradicts, self._hits + 1, 0)
-        turned = self._hits >= settings.contact_hits
+        self.hits = np.where(contradicts, self.hits + 1, 0)
+        turned = self.hits >= settings.contact_hits
         self.contact = self.contact ^ turned
-        self._hits[turned] = 0
+        self.hits[turned] = 0
         return self.contact
 
     def assume(self, contact: np.ndarray) -> None:
         """Start from known contacts (4,)."""
         self.contact = np.array(contact, bool)
-        self._hits[:] = 0
+        self.hits[:] = 0

@@ -14,12 +14,18 @@ from surefoot.components.estimator.contact_detector import ContactDetector
 from surefoot.components.estimator.contact_force import ContactForce
 from surefoot.components.estimator.surface_normal import SurfaceNormal
 from surefoot.components.robot_model import LegKinematics
-from surefoot.components.robot_model.rotation import quaternion_of, skew
+from surefoot.components.robot_model.rotation import exp_rotation, quaternion_of, skew
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
 
 _MAX_GAP_S = 0.02
 _REST_TOLERANCE = 1.0  # [m/s^2]
+_MEMORY = {
+    "filter": ("p_WB", "v_WB_W", "R_WB", "p_WF", "bias_gyro", "bias_acc", "omega_B", "P", "known"),
+    "detector": ("contact", "hits", "cycle"),
+    "normal": ("slope", "normal_W"),
+}
+"""What each part carries from one cycle to the next: the snapshot."""
 
 
 class Estimator(Component):
@@ -69,6 +75,7 @@ class Estimator(Component):
             return
         q, dq = state.q.reshape(4, 3), state.dq.reshape(4, 3)
         p_BF, J_B = self._legs.position(q), self._legs.jacobian(q)
+        dt = self._dt
         if self._last_t is None:
             self._begin(state, p_BF)
         else:
@@ -81,26 +88,29 @@ class Estimator(Component):
         probing = status == LegStatus.PROBING
         stance = contact & ((status == LegStatus.STANCE) | probing)
         rate = np.where(probing, self._settings.probing_rate, self._settings.stance_rate)
-        self._filter.update(p_BF, J_B, stance, rate, self._dt, self._rolling(q, dq))
+        self._filter.update(p_BF, J_B, stance, rate, dt, self._rolling(q, dq))
         healthy = self._guard(state, p_BF)
         self._publish(state, p_BF, J_B, dq, contact, force_W, healthy, outbox)
 
     def snapshot(self) -> dict[str, Any]:
-        f = self._filter
-        return {
-            "p_WB": f.p_WB, "v_WB_W": f.v_WB_W, "R_WB": f.R_WB, "p_WF": f.p_WF,
-            "bias_gyro": f.bias_gyro, "bias_acc": f.bias_acc, "P": f.P,
-            "contact": self._detector.contact, "contact_WF": self._contact_WF,
-            "force_B": self._force_B, "t": self._last_t,
-        }  # fmt: skip
+        mine = {"contact_WF": self._contact_WF, "force_B": self._force_B, "t": self._last_t}
+        return mine | {
+            f"{part}.{name}": getattr(getattr(self, f"_{part}"), name)
+            for part, names in _MEMORY.items()
+            for name in names
+        }
 
     def restore(self, state: dict[str, Any]) -> None:
-        for name in ("p_WB", "v_WB_W", "R_WB", "p_WF", "bias_gyro", "bias_acc", "P"):
-            getattr(self._filter, name)[:] = state[name]
-        self._detector.assume(state["contact"])
-        self._contact_WF = np.array(state["contact_WF"])
-        self._force_B = np.array(state["force_B"])
+        self._contact_WF, self._force_B = np.array(state["contact_WF"]), np.array(state["force_B"])
         self._last_t = float(state["t"])
+        for part, names in _MEMORY.items():
+            for name in names:
+                owner = getattr(self, f"_{part}")
+                kept = getattr(owner, name)
+                if isinstance(kept, np.ndarray):
+                    kept[:] = state[f"{part}.{name}"]  # in place: the filter holds views into its arrays
+                else:
+                    setattr(owner, name, state[f"{part}.{name}"])
 
     def _begin(self, state: HardwareState, p_BF: np.ndarray) -> None:
         self._filter.start(state.acc_B, p_BF, self._foot_radius)
@@ -128,14 +138,19 @@ class Estimator(Component):
         return self._detector.update(force_W @ self._normal.normal_W), force_W
 
     def _guard(self, state: HardwareState, p_BF: np.ndarray) -> bool:
-        """False, after starting again at the last position, when the filter has diverged."""
+        """False, after starting again at the last position and heading, when the filter has diverged.
+
+        One invalid estimate is enough: the state machine damps the robot and waits for a command.
+        """
         f, limit = self._filter, self._settings.position_limit
         uncertain = f.P[[2, 6, 7], [2, 6, 7]]
         if np.isfinite(f.p_WB).all() and np.isfinite(uncertain).all() and (uncertain < limit * limit).all():
             return True
         position = np.where(np.isfinite(f.p_WB), f.p_WB, 0.0)
+        yaw = float(np.nan_to_num(np.arctan2(f.R_WB[1, 0], f.R_WB[0, 0])))
         f.start(state.acc_B, p_BF, self._foot_radius)
         f.p_WB[:] = position
+        f.R_WB = exp_rotation(np.array([0.0, 0.0, yaw])) @ f.R_WB
         return False
 
     def _publish(self, state, p_BF, J_B, dq, contact, force_W, healthy, outbox: Outbox) -> None:

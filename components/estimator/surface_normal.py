@@ -13,13 +13,14 @@ class SurfaceNormal:
     """Least-squares plane through each foot's latest contact position, low-passed and bounded in tilt.
 
     Attributes:
+        slope: (2,) of the plane along x and y, low-passed.
         normal_W: (3,) unit normal, upwards.
     """
 
     def __init__(self, settings: Estimator):
         self._gain = settings.normal_filter
         self._slope_max = tan(settings.normal_tilt_max)
-        self._slope = np.zeros(2)
+        self.slope = np.zeros(2)
         self.normal_W = np.array([0.0, 0.0, 1.0])
 
     def update(self, contact_WF: np.ndarray) -> np.ndarray:
@@ -31,9 +32,9 @@ class SurfaceNormal:
         if determinant > 1e-8:
             r = xy.T @ z
             fit = np.array([c * r[0] - b * r[1], a * r[1] - b * r[0]]) / determinant
-            self._slope += self._gain * (fit - self._slope)
-            steepness = sqrt(self._slope[0] ** 2 + self._slope[1] ** 2)
-            slope = self._slope * min(1.0, self._slope_max / max(steepness, 1e-12))
+            self.slope += self._gain * (fit - self.slope)
+            steepness = sqrt(self.slope[0] ** 2 + self.slope[1] ** 2)
+            slope = self.slope * min(1.0, self._slope_max / max(steepness, 1e-12))
             length = sqrt(1.0 + slope[0] ** 2 + slope[1] ** 2)
             self.normal_W = np.array([-slope[0], -slope[1], 1.0]) / length
         return self.normal_W
