@@ -17,16 +17,16 @@ class Fsm:
     step_min_m: float = 0.05  # a foot whose target is not even this far ahead of it is left where it is
     alternatives: int = 3  # (Sec. II-D.3)
     alternative_spacing_m: float = 0.075
-    base_height_min_m: float = 0.29  # of the hip axes; the base is lowered as far as this to reach a candidate
+    base_height_min_m: float = 0.27  # of the hip axes; the base is lowered as far as this to reach a candidate
     base_height_step_m: float = 0.01
-    leg_length_plan_m: float = 0.425  # planned reach: eq. (5) keeps the base a few centimetres short of its pose
+    leg_length_plan_m: float = 0.40  # planned reach: eq. (5) keeps the base a few centimetres short of its pose
     leg_length_max_m: float = 0.470  # a foot that looks for ground stops here (Sec. II-D.4)
 
     # Base shift before a swing.
     base_reference: Literal["polygon", "stride"] = "polygon"  # while probing: inside the triangle, or the stride's
     stride_s: float = 4.0  # duration of a stride (Sec. II-B.3)
-    margin_m: float = 0.04  # alpha of eq. (5)
-    margin_extra_m: float = 0.01  # the base is sent this much further inside
+    margin_m: float = 0.02  # alpha of eq. (5); Table I's barrier holds the CoM another 1-3 cm inside
+    margin_extra_m: float = 0.02  # the base is sent this much further inside
     shift_s: float = 0.4  # least duration
     shift_speed: float = 0.2  # mean speed of longer shifts [m/s]
     shift_margin_m: float = 0.035  # lift-off once the centre of mass is this far inside ...

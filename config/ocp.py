@@ -42,10 +42,8 @@ class Ocp:
     joint_position: Barrier = Barrier(0.1, 0.01)  # [rad]
     joint_velocity: Barrier = Barrier(0.1, 0.1)  # [rad/s]
     force_limits: Barrier = Barrier(1.0, 0.5)  # [N]
-    # Table I has (100, 0.02): in metres a centring force of kilonewtons that costs reach. With mu = 10 the
-    # probing force would carry the base to the polygon's edge; the smaller delta makes a wall of alpha.
-    support_polygon: Barrier = Barrier(10.0, 0.005)  # [m]
-    balance_s: float = 0.2  # eq. (5) on the capture point, sqrt(z/g) at 0.4 m; 0: on the CoM, as in the paper
+    support_polygon: Barrier = Barrier(100.0, 0.02)  # [m]
+    balance_s: float = 0.0  # eq. (5) on the CoM; > 0: on the CoM extrapolated by its velocity over this [s]
     probing_force: Barrier = Barrier(0.7, 0.7)  # [N]
     friction: float = 0.5  # mu_c of eq. (3)
     cone_regularisation_n2: float = 4.0  # rounds the cone's tip; asks f_n of at least its root over mu_c
