@@ -68,11 +68,9 @@ class Foot:
 
 @dataclass(frozen=True)
 class Nominal:
-    """Postures and reach the planner starts from."""
+    """Postures the planner starts from."""
 
     leg_height: float  # hip axes above the ground when standing [m]
-    foot_y_outward: float  # nominal foot beyond the thigh's plane [m]
-    max_leg_length: float  # thigh axis to foot centre [m]
     stand_q: Vector  # hip, thigh, calf [rad]
     lie_q: Vector
 
