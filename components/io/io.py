@@ -14,6 +14,9 @@ from surefoot.hw.robot_interface import MotorLaw
 
 _RATE_HZ = PROCESSES["io"].rate_hz
 
+BACKENDS = {"mujoco": MujocoRobot}
+"""The robot interface behind each name of `hw.backend`."""
+
 
 class Io(Component):
     """Reads, publishes, gates and writes, then lets the plant advance to the next cycle.
@@ -31,7 +34,7 @@ class Io(Component):
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
-        self.robot = MujocoRobot(deployment)
+        self.robot = BACKENDS[deployment.hw.backend](deployment)
         self._gate = Gate(deployment.load_robot(), deployment.hw)
         self._began: float | None = None
         self._cycles = 0

@@ -1,11 +1,14 @@
 """The io component: sensors out, gated commands in, and never the truth to a controller."""
 
+from typing import get_args, get_type_hints
+
 import numpy as np
 
 from surefoot.bus.messages import JointCommand
 from surefoot.components.component import Inbox, Outbox
-from surefoot.components.io.io import Io
+from surefoot.components.io.io import BACKENDS, Io
 from surefoot.config.deployment import Deployment
+from surefoot.config.hw import Hw
 from surefoot.config.robot import load_robot
 
 
@@ -45,3 +48,9 @@ def test_a_malformed_command_damps_that_cycle():
 
     state = run(Io(Deployment()), 5, broken)[-2][1]
     assert state.damping and "command.kp of FL_hip is not finite" in state.gate
+
+
+def test_the_backend_is_the_deployments_choice(monkeypatch):
+    assert set(BACKENDS) == set(get_args(get_type_hints(Hw)["backend"]))
+    monkeypatch.setitem(BACKENDS, "other", lambda deployment: deployment.hw.seed)
+    assert Io(Deployment(hw=Hw(backend="other", seed=5))).robot == 5
