@@ -27,7 +27,7 @@ class Run:
     clock: Literal["simulated", "monotonic"] = "simulated"
     command: str = "forward"  # given by the operator's side once the robot stands; "" waits for one
     namespace: str = "surefoot"  # prefix of every key on the wire
-    epoch_s: float = 0.0  # monotonic clock at t = 0; the supervisor sets it for all processes of a run
+    epoch_s: Annotated[float, Within(0.0, 1e10)] = 0.0  # monotonic clock at t = 0, set by the supervisor for all
     log_dir: str = "log"  # where process logs go, relative to the working directory
     solve_share_max: Annotated[float, Within(0.05, 1.0)] = 0.6  # of 10 ms; slower machines run mpc.profile light
     cores_min: Annotated[int, Within(1, 256)] = 4  # likewise with fewer cores: seven processes share them

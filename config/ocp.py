@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
-Vector3 = tuple[float, float, float]
+from surefoot.config.quantities import ConeRounding, Friction, InputWeight, LeastForce, MostForce, Weight
+from surefoot.config.typed_toml import Within
+
+Vector3 = tuple[Weight, Weight, Weight]
+Balance = Annotated[float, Within(0.0, 1.0)]
+Step = Annotated[float, Within(1.0, 1e4)]
 
 
 @dataclass(frozen=True)
 class Barrier:
     """Relaxed log-barrier of Table I."""
 
-    mu: float
-    delta: float  # in the constraint's unit
+    mu: Annotated[float, Within(0.0, 1e4)]
+    delta: Annotated[float, Within(1e-4, 10.0)]  # above 0, where the logarithm ends; in the constraint's unit
 
 
 @dataclass(frozen=True)
@@ -25,11 +31,11 @@ class Weights:
     base_position: Vector3 = (2e4, 2e4, 2e4)  # [1/m^2]
     base_rotation: Vector3 = (1000.0, 3000.0, 3000.0)  # [1/rad^2]
     joints: Vector3 = (2.0, 2.0, 1.0)  # hip, thigh, calf [1/rad^2]
-    force: float = 1e-2  # sets the loop's bandwidth: at a tenth of it, delay and noise make the base ring [1/N^2]
+    force: InputWeight = 1e-2  # sets the bandwidth: at a tenth of it, delay and noise make the base ring [1/N^2]
     joint_velocity: Vector3 = (0.02, 0.02, 0.01)  # [1/(rad/s)^2]
-    foot_position: float = 2000.0  # W_p; a soft one lets the base drag the swing foot [1/m^2]
-    foot_velocity: float = 10.0  # W_v [1/(m/s)^2]
-    terminal_scale: float = 10.0  # of momentum and base at the last node; 0 is the paper's (1a)
+    foot_position: Weight = 2000.0  # W_p; a soft one lets the base drag the swing foot [1/m^2]
+    foot_velocity: InputWeight = 10.0  # W_v [1/(m/s)^2]
+    terminal_scale: Weight = 10.0  # of momentum and base at the last node; 0 is the paper's (1a)
 
 
 @dataclass(frozen=True)
@@ -43,13 +49,13 @@ class Ocp:
     joint_velocity: Barrier = Barrier(0.1, 0.1)  # [rad/s]
     force_limits: Barrier = Barrier(1.0, 0.5)  # [N]
     support_polygon: Barrier = Barrier(100.0, 0.02)  # [m]
-    balance_s: float = 0.0  # eq. (5) on the CoM; > 0: on the CoM extrapolated by its velocity over this [s]
+    balance_s: Balance = 0.0  # eq. (5) on the CoM; > 0: on the CoM extrapolated by its velocity over this [s]
     probing_force: Barrier = Barrier(0.7, 0.7)  # [N]
-    friction: float = 0.5  # mu_c of eq. (3)
-    cone_regularisation_n2: float = 4.0  # rounds the cone's tip; asks f_n of at least its root over mu_c
-    force_min_n: float = 5.0
-    force_max_n: float = 240.0
-    joint_velocity_limit: float = 8.0  # [rad/s], far inside the motors' own
-    swing_height_gain: float = 20.0  # feedback of a swing foot's height error [1/s]
-    step_force_n: float = 150.0  # a full Newton step diverges at events: larger ones are scaled down
-    step_state: float = 0.4
+    friction: Friction = 0.5  # mu_c of eq. (3)
+    cone_regularisation_n2: ConeRounding = 4.0  # rounds the cone's tip; asks f_n of at least its root over mu_c
+    force_min_n: LeastForce = 5.0
+    force_max_n: MostForce = 240.0
+    joint_velocity_limit: Annotated[float, Within(0.5, 100.0)] = 8.0  # [rad/s], far inside the motors' own
+    swing_height_gain: Annotated[float, Within(0.0, 500.0)] = 20.0  # feedback of a swing foot's height error [1/s]
+    step_force_n: Step = 150.0  # a full Newton step diverges at events: larger ones are scaled down
+    step_state: Annotated[float, Within(0.01, 10.0)] = 0.4

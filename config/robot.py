@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
-from surefoot.config.typed_toml import ConfigError, build, read_toml
+from surefoot.config.typed_toml import ConfigError, Within, build, read_toml
 
 LEGS = ("FL", "FR", "RL", "RR")
 """Order of legs in every array: front left, front right, rear left, rear right."""
@@ -19,32 +19,41 @@ JOINT_NAMES = tuple(f"{leg}_{joint}" for leg in LEGS for joint in JOINTS)
 GRAVITY = 9.81
 """Magnitude of gravity [m/s^2]; acts along -z of the world."""
 
-Vector = tuple[float, float, float]
+Coordinate = Annotated[float, Within(-2.0, 2.0)]
+Length = Annotated[float, Within(0.001, 2.0)]
+Mass = Annotated[float, Within(1e-3, 200.0)]
+Moment = Annotated[float, Within(1e-9, 100.0)]
+Product = Annotated[float, Within(-100.0, 100.0)]
+Cosine = Annotated[float, Within(-1.0, 1.0)]
+Loss = Annotated[float, Within(0.0, 20.0)]
+Angle = Annotated[float, Within(-6.3, 6.3)]
+Bend = Annotated[float, Within(-3.14, -0.01)]  # of a calf: knees bend backwards, and a straight leg is singular
+Vector = tuple[Coordinate, Coordinate, Coordinate]
+Inertia = tuple[Moment, Product, Product, Moment, Product, Moment]
+Axis = tuple[Cosine, Cosine, Cosine]
+Posture = tuple[Angle, Angle, Bend]
+Range = tuple[Angle, Angle]
 
 
 @dataclass(frozen=True)
 class Link:
     """Inertial figures of one rigid body, in its own frame."""
 
-    mass: float  # [kg]
+    mass: Mass  # [kg]
     com: Vector  # centre of mass [m]
-    inertia: tuple[float, float, float, float, float, float]  # ixx ixy ixz iyy iyz izz about the com [kg m^2]
-
-    def __post_init__(self) -> None:
-        if self.mass <= 0.0:
-            raise ConfigError(f"mass = {self.mass}: a body's mass must be positive")
+    inertia: Inertia  # ixx ixy ixz iyy iyz izz about the com [kg m^2]
 
 
 @dataclass(frozen=True)
 class Joint:
     """What a joint of one type has in common on all legs."""
 
-    axis: Vector
-    armature: float  # reflected rotor inertia [kg m^2]
-    friction: float  # Coulomb friction [N m]
-    damping: float  # viscous friction [N m s/rad]
-    torque_limit: float  # [N m]
-    velocity_limit: float  # [rad/s]
+    axis: Axis  # unit vector
+    armature: Annotated[float, Within(0.0, 1.0)]  # reflected rotor inertia [kg m^2]
+    friction: Loss  # Coulomb friction [N m]
+    damping: Loss  # viscous friction [N m s/rad]
+    torque_limit: Annotated[float, Within(0.1, 1000.0)]  # [N m]
+    velocity_limit: Annotated[float, Within(0.1, 200.0)]  # [rad/s]
 
 
 @dataclass(frozen=True)
@@ -53,9 +62,9 @@ class Leg:
 
     hip_p_B: Vector  # abduction axis in the trunk frame [m]
     thigh_p_hip: Vector  # thigh axis in the hip frame [m]
-    hip_range: tuple[float, float]  # [rad]
-    thigh_range: tuple[float, float]
-    calf_range: tuple[float, float]
+    hip_range: Range  # [rad]
+    thigh_range: Range
+    calf_range: tuple[Bend, Bend]
     hip: Link
     thigh: Link
     calf: Link
@@ -63,16 +72,16 @@ class Leg:
 
 @dataclass(frozen=True)
 class Foot:
-    radius: float  # [m]
+    radius: Length  # [m]
 
 
 @dataclass(frozen=True)
 class Nominal:
     """Postures the planner starts from."""
 
-    leg_height: float  # hip axes above the ground when standing [m]
-    stand_q: Vector  # hip, thigh, calf [rad]
-    lie_q: Vector
+    leg_height: Length  # hip axes above the ground when standing [m]
+    stand_q: Posture  # hip, thigh, calf [rad]
+    lie_q: Posture
 
 
 @dataclass(frozen=True)
@@ -85,7 +94,7 @@ class Primitive:
     """A collision shape in its link's frame."""
 
     shape: Literal["box", "cylinder_y"]
-    size: tuple[float, ...]  # box: full lengths; cylinder_y: radius, length [m]
+    size: tuple[Length, ...]  # box: full lengths; cylinder_y: radius, length [m]
     center: Vector  # [m]; y is outward and mirrored on right legs
 
 
@@ -94,8 +103,8 @@ class Robot:
     """All figures of one robot."""
 
     name: str
-    thigh_length: float  # [m]
-    calf_length: float  # [m]
+    thigh_length: Length  # [m]
+    calf_length: Length  # [m]
     foot: Foot
     nominal: Nominal
     joints: dict[str, Joint]

@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from surefoot.config.quantities import ConeRounding
+from surefoot.config.typed_toml import Within
+
+Speed = Annotated[float, Within(0.0, 2.0)]
 
 
 @dataclass(frozen=True)
 class Trajopt:
     """A stride of 4.0 s (Sec. II-B.3): each leg in turn, on four feet first, then in swing."""
 
-    intervals: int = 80
-    interval_s: float = 0.05
-    shift_s: float = 0.35  # on four feet before each swing
-    swing_s: float = 0.65
-    swing_height: float = 0.08  # [m]
-    swing_v_lift: float = 0.1  # [m/s]
-    swing_v_touch: float = 0.1  # [m/s]
-    iterations: int = 5
-    tolerance: float = 1e-3  # largest state change at which the SQP stops
-    envelope_trim_s: float = 0.05  # of the stance phase, left out at both ends
-    envelope_scale: float = 1.0
-    cone_regularisation_n2: float = 25.0  # rounder than the MPC's: asks at least 10 N of a stance foot
+    intervals: Annotated[int, Within(10, 1000)] = 80
+    interval_s: Annotated[float, Within(0.005, 0.5)] = 0.05
+    shift_s: Annotated[float, Within(0.0, 10.0)] = 0.35  # on four feet before each swing
+    swing_s: Annotated[float, Within(0.05, 10.0)] = 0.65
+    swing_height: Annotated[float, Within(0.001, 0.5)] = 0.08  # [m]
+    swing_v_lift: Speed = 0.1  # [m/s]
+    swing_v_touch: Speed = 0.1  # [m/s]
+    iterations: Annotated[int, Within(1, 200)] = 5
+    tolerance: Annotated[float, Within(0.0, 1.0)] = 1e-3  # largest state change at which the SQP stops
+    envelope_trim_s: Annotated[float, Within(0.0, 1.0)] = 0.05  # of the stance phase, left out at both ends
+    envelope_scale: Annotated[float, Within(0.1, 5.0)] = 1.0
+    cone_regularisation_n2: ConeRounding = 25.0  # rounder than the MPC's: asks at least 10 N of a stance foot

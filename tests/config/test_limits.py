@@ -1,0 +1,181 @@
+"""Every number has limits, every default is inside them, and what lies outside is refused by name."""
+
+import dataclasses
+import math
+import types
+import typing
+from pathlib import Path
+
+import pytest
+
+import surefoot.config.deployment as deployment_module
+from surefoot.config.deployment import Deployment, load_deployment
+from surefoot.config.robot import Robot, load_robot
+from surefoot.config.typed_toml import ConfigError, Within, build, to_table, with_override
+
+CONFIG = Path(deployment_module.__file__).parent
+
+
+def numbers(hint, path):
+    """(path, limits) of every number a type holds; limits is None where it has none."""
+    origin, args = typing.get_origin(hint), typing.get_args(hint)
+    if origin is typing.Annotated:
+        yield path, args[1]
+    elif dataclasses.is_dataclass(hint):
+        hints = typing.get_type_hints(hint, include_extras=True)
+        for field in dataclasses.fields(hint):
+            yield from numbers(hints[field.name], f"{path}.{field.name}".lstrip("."))
+    elif origin in (tuple, list, dict, typing.Union, types.UnionType):
+        for arg in args:
+            yield from numbers(arg, path)
+    elif hint in (int, float):
+        yield path, None
+
+
+def leaves(value, path=()):
+    """(path, key by key; value) of every number in a table."""
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else None
+    if inner is not None:
+        for key, item in inner:
+            yield from leaves(item, (*path, key))
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        yield path, value
+
+
+def table_of(assignments):
+    """The table of assignments with a space between them."""
+    table = {}
+    for assignment in assignments.split(" "):
+        table = with_override(table, assignment)
+    return table
+
+
+@pytest.mark.parametrize("cls", [Deployment, Robot])
+def test_every_number_has_two_finite_limits(cls):
+    found = list(numbers(cls, ""))
+    bare = [path for path, limits in found if not isinstance(limits, Within)]
+    assert not bare, f"give {', '.join(bare)} an Annotated[..., Within(least, most)]"
+    for path, limits in found:
+        assert math.isfinite(limits.least) and math.isfinite(limits.most) and limits.least < limits.most, path
+    assert len(found) > 10
+
+
+def test_a_number_without_limits_would_be_found():
+    @dataclasses.dataclass
+    class Careless:
+        gains: tuple[float, ...] = (1.0,)
+        share: typing.Annotated[float, Within(0.0, 1.0)] = 0.5
+        on: bool = True
+
+    assert [path for path, limits in numbers(Careless, "") if limits is None] == ["gains"]
+
+
+SECTIONS = [field.name for field in dataclasses.fields(Deployment) if field.name != "robot"]
+
+
+@pytest.mark.parametrize("section", SECTIONS)
+def test_the_defaults_of_a_section_are_within_its_limits(section):
+    default = getattr(Deployment(), section)
+    assert type(default)() == default
+    assert build(type(default), to_table(default), section) == default
+
+
+def test_the_defaults_go_with_each_other_and_so_do_the_deployments():
+    assert build(Deployment, to_table(Deployment())) == Deployment()
+    for path in CONFIG.glob("*.toml"):
+        load_deployment(path)
+
+
+@pytest.mark.parametrize("robot", [path.stem for path in (CONFIG / "robots").glob("*.toml")])
+def test_no_figure_of_a_robot_may_be_absurd(robot):
+    figures = load_robot(robot)
+    assert build(Robot, to_table(figures), robot) == figures
+    for path, value in leaves(to_table(figures)):
+        table = to_table(figures)
+        inner = table
+        for key in path[:-1]:
+            inner = inner[key]
+        inner[path[-1]] = value + 1e6
+        with pytest.raises(
+            ConfigError, match=rf"{path[-1] if isinstance(path[-1], str) else path[-2]}.*out of range"
+        ):
+            build(Robot, table)
+
+
+# A value that used to divide by zero, never end, press nothing or mean nothing, and how it is refused.
+OUTSIDE = {
+    "estimator.start_x_m=1e6": "-1000 to 1000",
+    "estimator.acc=0.0": "1e-05 to 10",
+    "estimator.encoder=-0.001": "1e-06 to 0.1",
+    "estimator.kinematics=0": "1e-06 to 0.1",
+    "estimator.slip_gate=0": "1 to 1e+06",
+    "estimator.force_filter_hz=0": "0.5 to 250",
+    "estimator.contact_every=0": "1 to 50",
+    "estimator.contact_hits=0": "1 to 50",
+    "estimator.friction_speed=0": "0.001 to 10",
+    "estimator.normal_filter=1.5": "0 to 1",
+    "estimator.normal_tilt_max=1.6": "0 to 1.2",
+    "fsm.goal_m=-1.0": "0 to 1000",
+    "fsm.step_m=0": "0.001 to 0.5",
+    "fsm.alternatives=-1": "0 to 20",
+    "fsm.base_height_step_m=0": "0.001 to 0.1",
+    "fsm.shift_speed=0": "0.005 to 2",
+    "fsm.swing_s=0": "0.05 to 10",
+    "fsm.swing_v_touch=0": "0.005 to 2",
+    "fsm.contact_armed=0": "0.1 to 1",
+    "fsm.fixed_force_n=-5": "0 to 500",
+    "fsm.dwell_s=0": "0.02 to 60",
+    "fsm.collapse_m=0": "0.001 to 0.3",
+    "fsm.held_share=1.2": "0 to 1",
+    "fsm.posture_speed=0": "0.05 to 10",
+    "fsm.tilt_max=4": "0.05 to 1.5",
+    "ocp.friction_cone.mu=10 ocp.friction_cone.delta=0": "0.0001 to 10",
+    "ocp.force_limits.mu=-1": "0 to 10000",
+    "ocp.weights.force=0": "1e-06 to 1e+06",
+    "ocp.weights.foot_velocity=0": "1e-06 to 1e+06",
+    "ocp.weights.terminal_scale=-1": "0 to 1e+06",
+    "ocp.friction=0": "0.05 to 2",
+    "ocp.cone_regularisation_n2=0": "0.001 to 10000",
+    "ocp.joint_velocity_limit=0": "0.5 to 100",
+    "ocp.step_force_n=0": "1 to 10000",
+    "trajopt.intervals=0": "10 to 1000",
+    "trajopt.interval_s=0": "0.005 to 0.5",
+    "trajopt.shift_s=-0.1": "0 to 10",
+    "trajopt.iterations=0": "1 to 200",
+    "trajopt.envelope_scale=0": "0.1 to 5",
+    "trajopt.cone_regularisation_n2=0": "0.001 to 10000",
+    "wbc.kd=600": "0 to 500",
+    "wbc.force_weight=0": "1e-06 to 1e+06",
+    "wbc.friction=-0.3": "0.05 to 2",
+    "wbc.friction_speed=0": "0.001 to 10",
+    "wbc.damping_kd=0": "0.1 to 100",
+    "wbc.lower_speed=0": "0.005 to 1",
+    "wbc.blend_s=0": "0.001 to 10",
+    "wbc.observer_gain=0": "0.01 to 250",
+    "wbc.failures_max=-1": "0 to 250",
+    "terrain.planks.rows=0": "1 to 50",
+    "terrain.planks.stiffness=0": "1 to 100000",
+    "terrain.planks.board_mass=0": "0.1 to 100",
+    "terrain.planks.frame_height_m=0": "0.02 to 5",
+    "run.epoch_s=-1": "0 to 1e+10",
+}
+
+
+@pytest.mark.parametrize(("assignments", "allowed"), OUTSIDE.items(), ids=OUTSIDE)
+def test_a_value_out_of_range_is_named_with_its_limits(assignments, allowed):
+    key, _, value = assignments.split(" ")[-1].partition("=")
+    with pytest.raises(ConfigError) as caught:
+        build(Deployment, table_of(assignments))
+    said = str(caught.value)
+    assert said.startswith((f"{key} = {value}: ", f"{key} = {float(value)}: "))
+    assert said.endswith(f"out of range, allowed {allowed}")
+
+
+def test_an_entry_out_of_range_is_named_by_its_place():
+    for assignment, said in (
+        ("fsm.crawl_order=[2, 0, 4, 1]", r"fsm\.crawl_order\[2\] = 4: out of range, allowed 0 to 3"),
+        ("ocp.weights.joints=[2.0, -2.0, 1.0]", r"ocp\.weights\.joints\[1\] = -2\.0: .* 0 to 1e\+06"),
+        ("wbc.wrench_weight=[1, 1, 1, 1, 1, -1]", r"wbc\.wrench_weight\[5\] = -1\.0: .* 0 to 1e\+06"),
+    ):
+        with pytest.raises(ConfigError, match=said):
+            build(Deployment, with_override({}, assignment))
