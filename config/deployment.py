@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import sqrt
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -13,10 +14,10 @@ from surefoot.config.fsm import Fsm
 from surefoot.config.hw import Hw
 from surefoot.config.mpc import Mpc
 from surefoot.config.ocp import Ocp
-from surefoot.config.robot import Robot, load_robot
+from surefoot.config.robot import GRAVITY, Robot, load_robot
 from surefoot.config.terrain import Terrain
 from surefoot.config.trajopt import Trajopt
-from surefoot.config.typed_toml import ConfigError, Within, build, read_toml, with_override
+from surefoot.config.typed_toml import ConfigError, Within, build, ordered, read_toml, with_override
 from surefoot.config.wbc import Wbc
 
 
@@ -39,7 +40,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Deployment:
-    """A whole deployment; each section's type holds its defaults."""
+    """A whole deployment; each section's type holds its defaults, and what one asks of another is checked here."""
 
     robot: str = "aliengo"
     run: Run = field(default_factory=Run)
@@ -52,9 +53,83 @@ class Deployment:
     wbc: Wbc = field(default_factory=Wbc)
     fsm: Fsm = field(default_factory=Fsm)
 
+    def __post_init__(self) -> None:
+        robot = self.load_robot()
+        self._check_gains()
+        self._check_plans(robot)
+        self._check_forces(robot)
+        self._check_reach(robot)
+
     def load_robot(self) -> Robot:
         """The figures of this deployment's robot."""
         return load_robot(self.robot)
+
+    def _check_gains(self) -> None:
+        """The gate damps in every cycle in which a gain is above its limit."""
+        for name in ("joint_kp", "posture_kp"):
+            ordered(self, f"wbc.{name}", "hw.kp_max", "every command would be refused")
+        for name in ("joint_kd", "posture_kd", "damping_kd"):
+            ordered(self, f"wbc.{name}", "hw.kd_max", "every command would be refused")
+
+    def _check_plans(self, robot: Robot) -> None:
+        """Plans are in explicit Euler steps, and motors have to follow them."""
+        ocp = self.ocp
+        for name, section in (("mpc", self.mpc), ("trajopt", self.trajopt)):
+            if ocp.swing_height_gain * section.interval_s > 2.0:
+                raise ConfigError(
+                    f"ocp.swing_height_gain = {ocp.swing_height_gain} with {name}.interval_s = "
+                    f"{section.interval_s}: a swing foot's height error would grow from node to node; "
+                    f"at most {2.0 / section.interval_s:g}, two over the interval"
+                )
+        slowest = min(robot.per_joint("velocity_limit"))
+        if ocp.joint_velocity_limit > slowest:
+            raise ConfigError(
+                f"ocp.joint_velocity_limit = {ocp.joint_velocity_limit}: at most the {slowest} rad/s that every "
+                f"joint of {robot.name} can make"
+            )
+
+    def _check_forces(self, robot: Robot) -> None:
+        """Four feet at their least and three at their most, or the robot cannot stand."""
+        quarter, third = robot.mass * GRAVITY / 4.0, robot.mass * GRAVITY / 3.0
+        for name, section in (("ocp", self.ocp), ("wbc", self.wbc)):
+            if section.force_min_n >= quarter:
+                raise ConfigError(
+                    f"{name}.force_min_n = {section.force_min_n}: must be below {quarter:.0f} N, "
+                    f"a quarter of {robot.name}'s weight"
+                )
+            if section.force_max_n <= third:
+                raise ConfigError(
+                    f"{name}.force_max_n = {section.force_max_n}: must be above {third:.0f} N, "
+                    f"a third of {robot.name}'s weight"
+                )
+        for name, section in (("ocp", self.ocp), ("trajopt", self.trajopt)):
+            asked = sqrt(section.cone_regularisation_n2) / self.ocp.friction
+            if asked >= quarter:
+                raise ConfigError(
+                    f"{name}.cone_regularisation_n2 = {section.cone_regularisation_n2} with ocp.friction = "
+                    f"{self.ocp.friction} asks {asked:.0f} N of every foot: must be below {quarter:.0f} N, "
+                    f"a quarter of {robot.name}'s weight"
+                )
+        ordered(self, "fsm.fixed_force_n", "ocp.force_max_n", "no foot is ever asked to press that hard")
+
+    def _check_reach(self, robot: Robot) -> None:
+        """What the robot is sent to must be within its legs' length, and its start on the ground."""
+        height, planks = robot.nominal.leg_height, self.terrain.planks
+        for name, most, what in (
+            ("leg_length_max_m", robot.reach, "legs reach"),
+            ("base_height_min_m", height, "hips stand at"),
+            ("leg_up_below_hip_m", height, "hips stand at"),
+        ):
+            value = getattr(self.fsm, name)
+            if value > most:
+                raise ConfigError(f"fsm.{name} = {value}: {robot.name}'s {what} {most:.3f} m; lower it")
+        stance = robot.legs["FL"].hip_p_B[0] - robot.legs["RL"].hip_p_B[0] + 2.0 * robot.foot.radius
+        least = stance + planks.start_offset_m
+        if self.terrain.kind == "planks" and planks.run_up_m < least:
+            raise ConfigError(
+                f"terrain.planks.run_up_m = {planks.run_up_m}: {robot.name} starts on it and needs {least:.2f} m, "
+                "start_offset_m included"
+            )
 
 
 def load_deployment(path: Path | str, overrides: Sequence[str] = ()) -> Deployment:
@@ -65,7 +140,8 @@ def load_deployment(path: Path | str, overrides: Sequence[str] = ()) -> Deployme
         overrides: assignments `section.key=value`, applied in order.
 
     Raises:
-        ConfigError: the file is missing or malformed, a key is unknown or a value has the wrong type.
+        ConfigError: the file is missing or malformed, a key is unknown, or a value has the wrong type, is out of
+            its limits or does not go with another.
     """
     table = read_toml(Path(path))
     for assignment in overrides:

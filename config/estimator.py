@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from surefoot.config.quantities import FrictionSpeed, Share
-from surefoot.config.typed_toml import Within
+from surefoot.config.typed_toml import ConfigError, Within, ordered
 
 Place = Annotated[float, Within(-1e3, 1e3)]
 White = Annotated[float, Within(1e-5, 10.0)]  # without noise of its own the prediction would ignore the feet
@@ -50,3 +50,12 @@ class Estimator:
 
     normal_filter: Share = 0.025  # share of a new plane fit taken in each cycle
     normal_tilt_max: Annotated[float, Within(0.0, 1.2)] = 0.35  # [rad]
+
+    def __post_init__(self) -> None:
+        ordered(self, "stance_rate", "probing_rate", "ground that is not trusted cannot hold a foot better")
+        ordered(self, "contact_off_n", "contact_on_n", "a contact must not end at a force that would begin it")
+        if self.tilt_start >= self.position_limit:
+            raise ConfigError(
+                f"tilt_start = {self.tilt_start} reaches position_limit = {self.position_limit}: "
+                "the filter would call itself diverged from the start; lower the one or raise the other"
+            )

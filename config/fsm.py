@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from surefoot.config.quantities import Share
-from surefoot.config.typed_toml import Within
+from surefoot.config.typed_toml import ConfigError, Within, ordered
 
 Goal = Annotated[float, Within(0.0, 1000.0)]
 Distance = Annotated[float, Within(0.0, 0.5)]
@@ -95,3 +95,23 @@ class Fsm:
     posture_min_s: Duration = 0.2
     tilt_max: Annotated[float, Within(0.05, 1.5)] = 0.7  # beyond this the robot has fallen and is damped [rad]
     crawl_order: tuple[Leg, Leg, Leg, Leg] = (2, 0, 3, 1)  # RL, FL, RR, FR
+
+    def __post_init__(self) -> None:
+        if sorted(self.crawl_order) != [0, 1, 2, 3]:
+            raise ConfigError(
+                f"crawl_order = {list(self.crawl_order)}: name each of the legs 0 to 3 once, such as [2, 0, 3, 1]"
+            )
+        if self.step_min_m >= self.step_m:
+            raise ConfigError(
+                f"step_min_m = {self.step_min_m} is not below step_m = {self.step_m}: no foot would ever be far "
+                "enough behind its target; lower the one or raise the other"
+            )
+        ordered(self, "leg_length_plan_m", "leg_length_max_m", "a planned foothold would be out of a leg's reach")
+        ordered(self, "shift_hold_s", "shift_timeout_s", "the wait before a lift-off would always time out")
+        ordered(self, "blend_s", "dwell_s", "a force would be over before it is reached")
+        sent = self.margin_m + self.margin_extra_m
+        if self.shift_margin_m > sent:
+            raise ConfigError(
+                f"shift_margin_m = {self.shift_margin_m} is above margin_m + margin_extra_m = {sent:g}: "
+                "lift-off would wait for more than the base is sent inside"
+            )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from surefoot.config.typed_toml import ConfigError, Within
+from surefoot.config.typed_toml import Within, ordered
 
 
 @dataclass(frozen=True)
@@ -38,5 +38,4 @@ class Hw:
     )
 
     def __post_init__(self) -> None:
-        if self.friction_min > self.friction_max:
-            raise ConfigError(f"friction_min = {self.friction_min} is above friction_max = {self.friction_max}")
+        ordered(self, "friction_min", "friction_max", "friction is drawn between the two")

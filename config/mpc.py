@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from surefoot.config.typed_toml import Within
+from surefoot.config.typed_toml import ConfigError, Within
 
 _PROFILES = {"paper": (67, 0.015, 0.015), "light": (40, 0.025, 0.025)}
 """Intervals, interval [s] and lead [s] of each profile; the rate of each is in the topic table."""
+
+_HORIZON_MIN_S = 0.2
+"""Lift-offs are announced 0.1 s ahead, and a policy is followed until it is 0.1 s old."""
 
 
 @dataclass(frozen=True)
@@ -31,3 +34,9 @@ class Mpc:
         for name, figure in zip(("intervals", "interval_s", "lead_s"), _PROFILES[self.profile], strict=True):
             if not getattr(self, name):
                 object.__setattr__(self, name, figure)
+        horizon_s = self.intervals * self.interval_s
+        if horizon_s < _HORIZON_MIN_S:
+            raise ConfigError(
+                f"intervals = {self.intervals} of interval_s = {self.interval_s} look {horizon_s:g} s ahead: "
+                f"at least {_HORIZON_MIN_S} s"
+            )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from surefoot.config.quantities import ConeRounding, Friction, InputWeight, LeastForce, MostForce, Weight
-from surefoot.config.typed_toml import Within
+from surefoot.config.typed_toml import Within, ordered
 
 Vector3 = tuple[Weight, Weight, Weight]
 Balance = Annotated[float, Within(0.0, 1.0)]
@@ -59,3 +59,6 @@ class Ocp:
     swing_height_gain: Annotated[float, Within(0.0, 500.0)] = 20.0  # feedback of a swing foot's height error [1/s]
     step_force_n: Step = 150.0  # a full Newton step diverges at events: larger ones are scaled down
     step_state: Annotated[float, Within(0.01, 10.0)] = 0.4
+
+    def __post_init__(self) -> None:
+        ordered(self, "force_min_n", "force_max_n", "no force would do for a foot that stands")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import cos, hypot, sqrt
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -43,6 +44,16 @@ class Link:
     com: Vector  # centre of mass [m]
     inertia: Inertia  # ixx ixy ixz iyy iyz izz about the com [kg m^2]
 
+    def __post_init__(self) -> None:
+        ixx, ixy, ixz, iyy, iyz, izz = self.inertia
+        minor = ixx * iyy - ixy * ixy
+        whole = minor * izz - ixx * iyz * iyz - iyy * ixz * ixz + 2.0 * ixy * ixz * iyz
+        if min(minor, whole) <= 0.0:
+            raise ConfigError(
+                f"inertia = {list(self.inertia)}: no body turns so, the matrix is not positive definite; "
+                "the order is ixx, ixy, ixz, iyy, iyz, izz"
+            )
+
 
 @dataclass(frozen=True)
 class Joint:
@@ -54,6 +65,10 @@ class Joint:
     damping: Loss  # viscous friction [N m s/rad]
     torque_limit: Annotated[float, Within(0.1, 1000.0)]  # [N m]
     velocity_limit: Annotated[float, Within(0.1, 200.0)]  # [rad/s]
+
+    def __post_init__(self) -> None:
+        if abs(hypot(*self.axis) - 1.0) > 1e-6:
+            raise ConfigError(f"axis = {list(self.axis)}: of length {hypot(*self.axis):g}, must be 1")
 
 
 @dataclass(frozen=True)
@@ -68,6 +83,12 @@ class Leg:
     hip: Link
     thigh: Link
     calf: Link
+
+    def __post_init__(self) -> None:
+        for joint in JOINTS:
+            lower, upper = getattr(self, f"{joint}_range")
+            if lower >= upper:
+                raise ConfigError(f"{joint}_range = {[lower, upper]}: the lower limit comes first")
 
 
 @dataclass(frozen=True)
@@ -97,6 +118,11 @@ class Primitive:
     size: tuple[Length, ...]  # box: full lengths; cylinder_y: radius, length [m]
     center: Vector  # [m]; y is outward and mirrored on right legs
 
+    def __post_init__(self) -> None:
+        names = {"box": ("x", "y", "z"), "cylinder_y": ("radius", "length")}[self.shape]
+        if len(self.size) != len(names):
+            raise ConfigError(f"size = {list(self.size)}: a {self.shape} has {len(names)}: {', '.join(names)}")
+
 
 @dataclass(frozen=True)
 class Robot:
@@ -117,11 +143,20 @@ class Robot:
         _require("joints", self.joints, JOINTS)
         _require("legs", self.legs, LEGS)
         _require("collision", self.collision, ("trunk", *JOINTS))
+        for posture in ("stand_q", "lie_q"):
+            self._check_posture(posture)
 
     @property
     def mass(self) -> float:
         """Total mass [kg]."""
         return self.trunk.mass + sum(getattr(leg, part).mass for leg in self.legs.values() for part in JOINTS)
+
+    @property
+    def reach(self) -> float:
+        """Longest distance from thigh axis to foot centre that every calf's range allows [m]."""
+        bend = min(leg.calf_range[1] for leg in self.legs.values())
+        thigh, calf = self.thigh_length, self.calf_length
+        return sqrt(thigh * thigh + calf * calf + 2.0 * thigh * calf * cos(bend))
 
     def per_joint(self, figure: str) -> tuple[float, ...]:
         """A figure of `Joint` for the twelve joints in order, e.g. `per_joint("torque_limit")`."""
@@ -130,6 +165,16 @@ class Robot:
     def position_range(self) -> tuple[tuple[float, float], ...]:
         """(lower, upper) of the twelve joints [rad]."""
         return tuple(getattr(self.legs[leg], f"{joint}_range") for leg in LEGS for joint in JOINTS)
+
+    def _check_posture(self, posture: str) -> None:
+        for name, leg in self.legs.items():
+            for joint, angle in zip(JOINTS, getattr(self.nominal, posture), strict=True):
+                lower, upper = getattr(leg, f"{joint}_range")
+                if not lower <= angle <= upper:
+                    raise ConfigError(
+                        f"nominal.{posture}: {joint} at {angle} rad is outside legs.{name}.{joint}_range = "
+                        f"{[lower, upper]}"
+                    )
 
 
 def load_robot(name: str) -> Robot:

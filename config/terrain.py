@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from surefoot.config.typed_toml import Within
+from surefoot.config.typed_toml import Within, ordered
 
 Count = Annotated[int, Within(1, 50)]
 Length = Annotated[float, Within(0.005, 5.0)]
@@ -37,6 +37,9 @@ class Planks:
     run_up_m: Platform = 1.0
     run_out_m: Platform = 1.6
     start_offset_m: Annotated[float, Within(0.0, 10.0)] = 0.05  # from the front feet to the first beam
+
+    def __post_init__(self) -> None:
+        ordered(self, "board_thickness_m", "frame_height_m", "boards would lie in the ground beneath")
 
     @property
     def pitch_m(self) -> float:

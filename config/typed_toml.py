@@ -8,6 +8,7 @@ import math
 import tomllib
 import types
 import typing
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -73,7 +74,18 @@ def build(cls: type, table: Any, path: str = "") -> Any:
     try:
         return cls(**values)
     except ConfigError as error:
-        raise ConfigError(f"{where}: {error}") from None
+        raise ConfigError(f"{path}: {error}" if path else str(error)) from None
+
+
+def ordered(config: Any, low: str, high: str, why: str) -> None:
+    """Refuse a configuration in which the figure `low` is above the figure `high`; both may be dotted paths.
+
+    Raises:
+        ConfigError: names both with their values, and `why` that cannot be.
+    """
+    least, most = attrgetter(low)(config), attrgetter(high)(config)
+    if least > most:
+        raise ConfigError(f"{low} = {least} is above {high} = {most}: {why}; lower the one or raise the other")
 
 
 def with_override(table: dict[str, Any], assignment: str) -> dict[str, Any]:

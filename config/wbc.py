@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from surefoot.config.quantities import Friction, FrictionSpeed, InputWeight, LeastForce, MostForce, Weight
-from surefoot.config.typed_toml import Within
+from surefoot.config.typed_toml import Within, ordered
 
 Wrench = tuple[Weight, Weight, Weight, Weight, Weight, Weight]
 Acceleration = Annotated[float, Within(1.0, 500.0)]
@@ -50,3 +50,6 @@ class Wbc:
     observer_moment_max: Annotated[float, Within(0.0, 500.0)] = 10.0  # largest external moment it may claim [N m]
     observer_gap_s: Annotated[float, Within(0.005, 1.0)] = 0.02  # after a longer gap between cycles it starts anew
     failures_max: Annotated[int, Within(0, 250)] = 5  # successive QP failures before damping
+
+    def __post_init__(self) -> None:
+        ordered(self, "force_min_n", "force_max_n", "no force would do for a foot that stands")

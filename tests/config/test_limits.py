@@ -179,3 +179,97 @@ def test_an_entry_out_of_range_is_named_by_its_place():
     ):
         with pytest.raises(ConfigError, match=said):
             build(Deployment, with_override({}, assignment))
+
+
+# Values that are possible alone, but not together.
+TOGETHER = {
+    "estimator.contact_off_n=12": r"estimator: contact_off_n = 12\.0 is above contact_on_n = 10\.0",
+    "estimator.stance_rate=0.5": r"estimator: stance_rate = 0\.5 is above probing_rate = 0\.2",
+    "estimator.tilt_start=0.5 estimator.position_limit=0.4": r"tilt_start = 0\.5 reaches position_limit = 0\.4",
+    "fsm.crawl_order=[0,0,0,0]": r"fsm: crawl_order = \[0, 0, 0, 0\]: name each of the legs 0 to 3 once",
+    "fsm.step_min_m=0.1": r"fsm: step_min_m = 0\.1 is not below step_m = 0\.1",
+    "fsm.leg_length_plan_m=0.472": r"fsm: leg_length_plan_m = 0\.472 is above leg_length_max_m = 0\.47",
+    "fsm.shift_hold_s=4": r"fsm: shift_hold_s = 4\.0 is above shift_timeout_s = 3\.0",
+    "fsm.blend_s=0.2": r"fsm: blend_s = 0\.2 is above dwell_s = 0\.1",
+    "fsm.shift_margin_m=0.06": r"fsm: shift_margin_m = 0\.06 is above margin_m \+ margin_extra_m = 0\.05",
+    "ocp.force_min_n=50 ocp.force_max_n=40": r"ocp: force_min_n = 50\.0 is above force_max_n = 40\.0",
+    "wbc.force_min_n=50 wbc.force_max_n=40": r"wbc: force_min_n = 50\.0 is above force_max_n = 40\.0",
+    "trajopt.swing_s=0.7": r"trajopt: shift_s \+ swing_s = 1\.05 .* intervals \* interval_s = 4 s",
+    "trajopt.shift_s=0.95 trajopt.swing_s=0.05 trajopt.interval_s=0.1": r"interval_s = 0\.1 is above swing_s",
+    "trajopt.envelope_trim_s=1.0 trajopt.shift_s=0 trajopt.intervals=52": r"trim_s = 1\.0 .* at most 0\.925",
+    "terrain.planks.board_thickness_m=0.3": r"board_thickness_m = 0\.3 is above frame_height_m = 0\.2",
+    "mpc.intervals=1": r"mpc: intervals = 1 of interval_s = 0\.015 look 0\.015 s ahead: at least 0\.2 s",
+    "wbc.posture_kp=600": r"^wbc\.posture_kp = 600\.0 is above hw\.kp_max = 500\.0",
+    "wbc.joint_kd=30": r"^wbc\.joint_kd = 30\.0 is above hw\.kd_max = 20\.0",
+    "hw.kd_max=2": r"^wbc\.posture_kd = 6\.0 is above hw\.kd_max = 2\.0",
+    "ocp.swing_height_gain=60": r"^ocp\.swing_height_gain = 60\.0 with trajopt\.interval_s = 0\.05: .* at most 40",
+    "ocp.joint_velocity_limit=18": r"^ocp\.joint_velocity_limit = 18\.0: at most the 15\.89 rad/s",
+    "wbc.force_min_n=70": r"^wbc\.force_min_n = 70\.0: must be below 61 N",
+    "ocp.force_max_n=80": r"^ocp\.force_max_n = 80\.0: must be above 82 N",
+    "ocp.cone_regularisation_n2=1000": r"^ocp\.cone_regularisation_n2 = 1000\.0 .* asks 63 N .* below 61 N",
+    "ocp.friction=0.08": r"^trajopt\.cone_regularisation_n2 = 25\.0 with ocp\.friction = 0\.08 asks 62 N",
+    "fsm.fixed_force_n=300": r"^fsm\.fixed_force_n = 300\.0 is above ocp\.force_max_n = 240\.0",
+    "fsm.leg_length_max_m=0.48": r"^fsm\.leg_length_max_m = 0\.48: aliengo's legs reach 0\.474 m",
+    "fsm.base_height_min_m=0.45": r"^fsm\.base_height_min_m = 0\.45: aliengo's hips stand at 0\.400 m",
+    "fsm.leg_up_below_hip_m=0.45": r"^fsm\.leg_up_below_hip_m = 0\.45: aliengo's hips",
+    "terrain.kind=planks terrain.planks.run_up_m=0.5": r"^terrain\.planks\.run_up_m = 0\.5: .* 0\.58 m",
+    "robot=spot": r"^robot 'spot' is not described; known: aliengo",
+}
+
+
+@pytest.mark.parametrize(("assignments", "said"), TOGETHER.items(), ids=TOGETHER)
+def test_values_that_do_not_go_together_are_named(assignments, said):
+    with pytest.raises(ConfigError, match=said):
+        build(Deployment, table_of(assignments))
+
+
+@pytest.mark.parametrize(
+    "assignments",
+    [
+        "fsm.alternatives=0 fsm.goal_m=0 fsm.step_min_m=0",
+        "fsm.fixed_force_n=150 fsm.collapse_m=0.01",
+        "ocp.support_polygon.mu=100.0 ocp.support_polygon.delta=0.02 ocp.balance_s=0.0",
+        "ocp.weights.terminal_scale=0 ocp.weights.force=1e-3",
+        "ocp.friction=0.8 wbc.friction=0.5",
+        "trajopt.intervals=40 trajopt.interval_s=0.1",
+        "terrain.kind=planks terrain.planks.stiffness=60 terrain.planks.start_offset_m=0",
+        "wbc.observer_force_share=0 wbc.observer_moment_max=0",
+        "mpc.profile=light mpc.interval_s=0.02 mpc.intervals=50",
+    ],
+)
+def test_what_a_researcher_may_try_is_let_through(assignments):
+    build(Deployment, table_of(assignments))
+
+
+@pytest.mark.parametrize(
+    ("keys", "value", "said"),
+    [
+        (
+            ("joints", "calf", "axis"),
+            [0.0, 1.0, 1.0],
+            r"joints\.calf: axis = \[0\.0, 1\.0, 1\.0\]: of length 1\.41",
+        ),
+        (("trunk", "mass"), 0.0, r"trunk\.mass = 0\.0: out of range, allowed 0\.001 to 200"),
+        (("trunk", "inertia"), [0.05, 0.2, 0.0, 0.2, 0.0, 0.2], r"trunk: inertia = .* not positive definite"),
+        (
+            ("legs", "RL", "hip_range"),
+            [1.0, -1.0],
+            r"legs\.RL: hip_range = \[1\.0, -1\.0\]: the lower limit comes",
+        ),
+        (("legs", "RL", "calf_range"), [-2.7, 0.5], r"legs\.RL\.calf_range\[1\] = 0\.5: .* -3\.14 to -0\.01"),
+        (("nominal", "stand_q"), [0.0, 4.0, -1.4], r"nominal\.stand_q: thigh at 4\.0 rad is outside legs\.FL"),
+        (
+            ("collision", "hip", "size"),
+            [0.05],
+            r"collision\.hip: size = \[0\.05\]: a cylinder_y has 2: radius, len",
+        ),
+    ],
+)
+def test_a_figure_that_no_robot_has_is_named(keys, value, said):
+    table = to_table(load_robot("aliengo"))
+    inner = table
+    for key in keys[:-1]:
+        inner = inner[key]
+    inner[keys[-1]] = value
+    with pytest.raises(ConfigError, match=said):
+        build(Robot, table)
