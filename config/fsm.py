@@ -19,6 +19,7 @@ Flight = Annotated[float, Within(0.05, 10.0)]  # longer than the 30 ms before it
 SwingShare = Annotated[float, Within(0.1, 1.0)]  # a foot that has just lifted off is still near the ground
 Speed = Annotated[float, Within(0.005, 2.0)]  # above 0: it is waited for, or divided by
 Force = Annotated[float, Within(0.0, 500.0)]
+Tilt = Annotated[float, Within(0.05, 1.5)]
 Leg = Annotated[int, Within(0, 3)]
 
 
@@ -82,18 +83,14 @@ class Fsm:
     leg_up_below_hip_m: Reach = 0.27
 
     # A step is given up ...
-    tilt_hold: Annotated[float, Within(0.05, 1.5)] = (
-        0.35  # ... when the trunk tilts this far from the local plane [rad] ...
-    )
-    margin_hold_m: Annotated[float, Within(-0.2, 0.2)] = (
-        0.005  # ... or the centre of mass is less than this inside the other three feet ...
-    )
+    tilt_hold: Tilt = 0.35  # ... when the trunk tilts this far from the local plane [rad] ...
+    margin_hold_m: Distance = 0.005  # ... or the centre of mass is less than this inside the other feet ...
     unsteady_s: Pause = 0.04  # ... for this long
 
     # Postures and limits.
     posture_speed: Annotated[float, Within(0.05, 10.0)] = 0.8  # of the fastest joint in JOINT mode [rad/s]
     posture_min_s: Duration = 0.2
-    tilt_max: Annotated[float, Within(0.05, 1.5)] = 0.7  # beyond this the robot has fallen and is damped [rad]
+    tilt_max: Tilt = 0.7  # beyond this the robot has fallen and is damped [rad]
     crawl_order: tuple[Leg, Leg, Leg, Leg] = (2, 0, 3, 1)  # RL, FL, RR, FR
 
     def __post_init__(self) -> None:

@@ -426,6 +426,8 @@ class ProbingCycle:
         to = self._planner.below_hip(leg, now.pose, settings.leg_up_below_hip_m)
         # Straight up first: half the way to the place below the hip, so that the leg comes free of what it is in.
         to[:2] = 0.5 * (to[:2] + now.estimate.p_WF[leg, :2])
+        # With the base lowered the place below the hip may be in the ground.
+        to[2] = max(to[2], self._watch.safe(leg)[2] + settings.swing_height_m)
         self.motion.raise_leg(leg, now, to)
         if settings.base_reference == "stride":
             self.motion.shift_base(now, self._support_pose, settings.shift_s)

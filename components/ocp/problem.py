@@ -26,6 +26,9 @@ from surefoot.components.robot_model.rotations import exp_rotations, log_rotatio
 from surefoot.config.ocp import Ocp
 from surefoot.config.robot import Robot
 
+_FORCE_FLOOR_N = 1.0
+"""A stance foot's iterate stays above this: its least force is the barrier's affair."""
+
 
 def compose(settings: Ocp, robot: Robot) -> tuple[Tracking, tuple[Term, ...]]:
     """Eq. (2) and the inequalities of eqs. (3)-(6) with the figures of Table I."""
@@ -207,7 +210,7 @@ class Problem:
         """Forces clipped to the limits and the cone; the defects of the next iteration absorb the change."""
         normal, settings = reference.normal_W, self.settings
         along = force_W @ normal
-        clipped = np.clip(along, 1.0, settings.force_max_n - settings.force_min_n)
+        clipped = np.clip(along, _FORCE_FLOOR_N, settings.force_max_n)
         tangential = force_W - along[..., None] * normal
         length = np.sqrt((tangential**2).sum(axis=-1))
         shrink = np.minimum(1.0, settings.friction * clipped / np.maximum(length, 1e-9))

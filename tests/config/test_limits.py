@@ -191,7 +191,7 @@ TOGETHER = {
     "fsm.leg_length_plan_m=0.472": r"fsm: leg_length_plan_m = 0\.472 is above leg_length_max_m = 0\.47",
     "fsm.shift_hold_s=4": r"fsm: shift_hold_s = 4\.0 is above shift_timeout_s = 3\.0",
     "fsm.blend_s=0.2": r"fsm: blend_s = 0\.2 is above dwell_s = 0\.1",
-    "fsm.shift_margin_m=0.06": r"fsm: shift_margin_m = 0\.06 is above margin_m \+ margin_extra_m = 0\.05",
+    "fsm.shift_margin_m=0.06": r"fsm: shift_margin_m = 0\.06 is above margin_m \+ margin_extra_m = 0\.04",
     "ocp.force_min_n=50 ocp.force_max_n=40": r"ocp: force_min_n = 50\.0 is above force_max_n = 40\.0",
     "wbc.force_min_n=50 wbc.force_max_n=40": r"wbc: force_min_n = 50\.0 is above force_max_n = 40\.0",
     "trajopt.swing_s=0.7": r"trajopt: shift_s \+ swing_s = 1\.05 .* intervals \* interval_s = 4 s",
