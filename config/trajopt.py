@@ -8,21 +8,20 @@ from typing import Annotated
 from surefoot.config.quantities import ConeRounding
 from surefoot.config.typed_toml import ConfigError, Within, ordered
 
-Speed = Annotated[float, Within(0.0, 2.0)]
 _ROUNDING_S = 1e-9
 
 
 @dataclass(frozen=True)
 class Trajopt:
-    """A stride of 4.0 s (Sec. II-B.3): each leg in turn, on four feet first, then in swing."""
+    """A stride of 4.0 s (Sec. II-B.3): each leg in turn, on four feet first, then in swing.
+
+    The swings have the height and the speeds of section fsm.
+    """
 
     intervals: Annotated[int, Within(10, 1000)] = 80
     interval_s: Annotated[float, Within(0.005, 0.5)] = 0.05
     shift_s: Annotated[float, Within(0.0, 10.0)] = 0.35  # on four feet before each swing
     swing_s: Annotated[float, Within(0.05, 10.0)] = 0.65
-    swing_height: Annotated[float, Within(0.001, 0.5)] = 0.08  # [m]
-    swing_v_lift: Speed = 0.1  # [m/s]
-    swing_v_touch: Speed = 0.1  # [m/s]
     iterations: Annotated[int, Within(1, 200)] = 5
     tolerance: Annotated[float, Within(0.0, 1.0)] = 1e-3  # largest state change at which the SQP stops
     envelope_trim_s: Annotated[float, Within(0.0, 1.0)] = 0.05  # of the stance phase, left out at both ends

@@ -9,17 +9,18 @@ from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotation import matrix_of_rpy
+from surefoot.config.fsm import Fsm
 from surefoot.config.robot import GRAVITY, Robot
 from surefoot.config.trajopt import Trajopt
 
 
 class Stride:
-    """Samples a stride on the problem's nodes."""
+    """Samples a stride on the problem's nodes; its swings have the shape of those that are carried out."""
 
-    def __init__(self, robot: Robot, settings: Trajopt):
+    def __init__(self, robot: Robot, settings: Trajopt, stepping: Fsm):
         self._legs = LegKinematics(robot)
         self._weight = robot.mass * GRAVITY
-        self._settings = settings
+        self._settings, self._stepping = settings, stepping
         self.t = settings.interval_s * np.arange(settings.intervals + 1)
 
     def touch_down(self, place: int) -> float:
@@ -28,7 +29,7 @@ class Stride:
 
     def sample(self, request: PlanRequest, base_now: np.ndarray) -> NodeReference:
         """References from the present base pose (6,) to the request's target."""
-        settings, t = self._settings, self.t
+        settings, stepping, t = self._settings, self._stepping, self.t
         nodes = len(t)
         contact = np.ones((nodes, 4), bool)
         p_WF, v_WF = np.tile(request.p_WF, (nodes, 1, 1)), np.zeros((nodes, 4, 3))
@@ -41,9 +42,9 @@ class Stride:
                 swing_to=request.target_WF[leg],
                 swing_t0=0.0 if lifted else landing - settings.swing_s,
                 swing_t1=landing,
-                swing_height=settings.swing_height,
-                swing_v_lift=settings.swing_v_lift,
-                swing_v_touch=settings.swing_v_touch,
+                swing_height=stepping.swing_height_m,
+                swing_v_lift=stepping.swing_v_lift,
+                swing_v_touch=stepping.swing_v_touch,
                 normal_W=request.normal_W,
             )
             # Half a nanosecond: node times are multiples of the interval only to rounding.

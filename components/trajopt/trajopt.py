@@ -32,7 +32,7 @@ class Trajopt(Component):
         rounder = replace(deployment.ocp, cone_regularisation_n2=settings.cone_regularisation_n2)
         self._settings = settings
         self._problem = Problem(rounder, robot, settings.intervals)
-        self._stride = Stride(robot, settings)
+        self._stride = Stride(robot, settings, deployment.fsm)
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         for request in inbox.new("trajopt/request"):
