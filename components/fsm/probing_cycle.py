@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from surefoot.bus.messages import FootholdRegions, LegStatus, MotionReference, Plan
+from surefoot.components.fsm.balance import Balance
 from surefoot.components.fsm.course import AROUND_POINTS, Course
 from surefoot.components.fsm.foothold_planner import FootholdPlanner
 from surefoot.components.fsm.motion import LAND_AHEAD_S, Motion
@@ -16,7 +17,6 @@ from surefoot.components.fsm.probe import Held, Probe
 from surefoot.components.fsm.questions import Questions
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
-from surefoot.components.fsm.support_triangle import SupportTriangle
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import LEGS, Robot
 
@@ -43,6 +43,7 @@ class ProbingCycle:
         self._course = Course(self._planner, settings)
         self._report = report
         self._watch = StanceWatch()
+        self._balance = Balance(settings)
         self._press = Probe(settings)
         self.motion = Motion(settings)
         self.questions = Questions()
@@ -60,8 +61,6 @@ class ProbingCycle:
         self._support_pose = np.zeros(6)
         self._halt = ""  # why the robot is to stop once the leg is back
         self._no_way_back = ""  # why the leg in the air has no ground to go back to
-        self._inside_since: float | None = None
-        self._unsteady_since: float | None = None
         self._touch_z = 0.0
         self._entered = 0.0
         self._steps = {
@@ -238,7 +237,7 @@ class ProbingCycle:
             duration = max(settings.shift_s, duration)
             self._plan_swing(now.t + duration, self._foothold_W, now)
         self.motion.shift_base(now, self._support_pose, duration)
-        self._inside_since = None
+        self._balance.begin_shift()
         self._enter(State.MOVE, now, f"base shift for {LEGS[self._leg]}")
 
     def _move(self, now: Observation) -> None:
@@ -247,14 +246,7 @@ class ProbingCycle:
             self._event("rejected", "the base did not come to rest inside the triangle", now, self._foothold_W)
             self._next_candidate(now)
             return
-        margin = SupportTriangle(reference.p_WF, self._leg).margin(now.com_W[:2])
-        speed = float(np.hypot(*now.estimate.v_WB_W[:2]))
-        inside = margin >= settings.shift_margin_m and speed < settings.shift_rest_speed
-        if not inside:
-            self._inside_since = None
-        elif self._inside_since is None:
-            self._inside_since = now.t
-        ready = self._inside_since is not None and now.t - self._inside_since >= settings.shift_hold_s
+        ready = self._balance.ready(now, reference, self._leg)
         if motion.in_air:
             if ready and now.t >= reference.base_t1:
                 self._plan_swing(now.t, self._foothold_W, now)
@@ -531,33 +523,19 @@ class ProbingCycle:
 
     def _watch_balance(self, now: Observation) -> None:
         """A base that tilts or leaves the support triangle while a leg is moved ends the step."""
-        settings = self._settings
         resting = self.state in (State.RETURN_SAFE, State.STOPPED)
-        busy = self.state == State.PROBE or (self.motion.in_air and not resting)
-        why = self._unsteady(now) if busy else ""
+        if self.state != State.PROBE and (resting or not self.motion.in_air):
+            return
+        why = self._balance.lost(now, self.reference, self._leg)
         if not why:
-            self._unsteady_since = None
-        elif self._unsteady_since is None:
-            self._unsteady_since = now.t
-        elif now.t - self._unsteady_since >= settings.unsteady_s:
-            self._unsteady_since = None
-            self._event("rejected", why, now, now.estimate.p_WF[self._leg])
-            if self.motion.in_air:
-                self._halt = why
-                self._return_safe(now, why)
-            else:
-                self.motion.plant(now)
-                self._rest(now, why)
-
-    def _unsteady(self, now: Observation) -> str:
-        settings = self._settings
-        tilt = float(np.arccos(np.clip(now.up_W @ self.reference.normal_W, -1.0, 1.0)))
-        if tilt > settings.tilt_hold:
-            return f"base tilted by {tilt:.2f} rad from the ground, limit {settings.tilt_hold} rad"
-        margin = SupportTriangle(self.reference.p_WF, self._leg).margin(now.com_W[:2])
-        if settings.support_polygon and margin < settings.margin_hold_m:
-            return f"centre of mass {1e3 * margin:.0f} mm inside, limit {1e3 * settings.margin_hold_m:.0f} mm"
-        return ""
+            return
+        self._event("rejected", why, now, now.estimate.p_WF[self._leg])
+        if self.motion.in_air:
+            self._halt = why
+            self._return_safe(now, why)
+        else:
+            self.motion.plant(now)
+            self._rest(now, why)
 
     # ----------------------------------------------------------------------------------------------------
 
