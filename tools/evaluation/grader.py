@@ -16,6 +16,8 @@ from surefoot.bus.messages import (
     SimTruth,
     StateEstimate,
 )
+from surefoot.bus.topics import TOPICS
+from surefoot.components.fsm.support_triangle import SupportTriangle
 from surefoot.config.deployment import Deployment
 from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
 
@@ -25,7 +27,7 @@ _CARRIES_N = 10.0  # a foot that bears this much stands
 _FORCES = 6  # of the GRF envelope
 _STOPPED_S = 3.0  # a machine that rests this long waits for a new direction
 _BELOW_M = 0.06  # a foot this far below the surface is in a hole
-_ANTICLOCKWISE = (0, 2, 3, 1)
+_TRUTH_DT = 1.0 / TOPICS["sim/truth"].rate_hz
 
 
 class Grader:
@@ -42,7 +44,7 @@ class Grader:
         self._press = PressTest(deployment)
         self._verdict = lru_cache(maxsize=None)(self._collapsible)
         self.failure, self.passed, self.touching = "", False, ""
-        self._resting_s = 0.0
+        self._moving_t = 0.0  # of the latest reference that did not ask to rest
         self._truth: SimTruth | None = None
         self._estimate: StateEstimate | None = None
         self._reference: MotionReference | None = None
@@ -80,7 +82,8 @@ class Grader:
             self._estimate = message
         elif key == "fsm/reference":
             self._reference = message
-            self._resting_s = self._resting_s + 0.004 if message.state == "STOPPED" else 0.0
+            if message.state != "STOPPED":
+                self._moving_t = message.t
         elif key == "mpc/policy" and message.valid:
             self._policy = message
             for name, value in zip(message.constraint, message.violation, strict=True):
@@ -94,26 +97,25 @@ class Grader:
     def over(self) -> bool:
         """The run is decided."""
         reference = self._reference
-        done = reference is not None and (reference.finished or self._resting_s > _STOPPED_S)
+        done = reference is not None and (reference.finished or reference.t - self._moving_t > _STOPPED_S)
         return bool(self.failure) or (self.passed and self._terrain != "flat") or done
 
     def finish(self, t: float, limit_s: float) -> None:
         """Name the failure of a run that ended without success."""
         reference = self._reference
-        finished = reference is not None and reference.finished
-        if not self.failure and not (finished and (self._terrain == "flat" or self.passed)) and not self.passed:
+        walked = self._terrain == "flat" and reference is not None and reference.finished
+        if not self.failure and not self.passed and not walked:
             self.failure = "timeout" if t >= limit_s else "stopped"
 
     # Truth ----------------------------------------------------------------------------------------------
 
     def _on_truth(self, truth: SimTruth) -> None:
         self._truth = truth
-        dt = 0.002
         w = min(1.0, abs(float(truth.quat_WB[0] ** 2 + truth.quat_WB[3] ** 2)))
         tilt = 2.0 * np.arccos(np.sqrt(w))
         self.tilt = max(self.tilt, float(tilt))
-        self.energy += dt * truth.power_w
-        self.saturated_s += dt * truth.saturated
+        self.energy += _TRUTH_DT * truth.power_w
+        self.saturated_s += _TRUTH_DT * truth.saturated
         if self._start is None:
             self._start = truth
         if tilt > FALL_TILT:
@@ -155,17 +157,17 @@ class Grader:
 
     def _watch_probe(self, truth: SimTruth, reference: MotionReference) -> None:
         """CoM margin from lift-off to the end of probing; forces while one is held; the unloading."""
+        if self._lifting is not None:
+            lifted, since = self._lifting
+            if truth.force_W[lifted, 2] < _CARRIES_N:
+                self.unload.append(truth.t - since)
+                self._lifting = None
         leg = reference.leg
         if leg < 0:
             return
         busy = reference.leg_status[leg] in (LegStatus.SWING, LegStatus.LANDING, LegStatus.PROBING)
         if busy and reference.state in ("DETECT_CONTACT", "PROBE", "PROBE_AROUND", "LEG_UP"):
-            self.margin = min(self.margin, _margin(truth, leg))
-        if self._lifting is not None:
-            lifted, since = self._lifting
-            if truth.force_W[lifted, 2] < 10.0:
-                self.unload.append(truth.t - since)
-                self._lifting = None
+            self.margin = min(self.margin, SupportTriangle(truth.p_WF, leg).margin(truth.com_W[:2]))
         if reference.state != "PROBE" or reference.probe_leg < 0:
             return
         since = truth.t - reference.probe_t0
@@ -282,15 +284,6 @@ class Grader:
             "torque_saturation_s": self.saturated_s,
             "energy_j": self.energy,
         }
-
-
-def _margin(truth: SimTruth, leg: int) -> float:
-    """Distance of the true centre of mass from the edges of the other feet's triangle [m]."""
-    corners = np.array([truth.p_WF[other, :2] for other in _ANTICLOCKWISE if other != leg])
-    edges = np.roll(corners, -1, axis=0) - corners
-    offset = truth.com_W[:2] - corners
-    cross = edges[:, 0] * offset[:, 1] - edges[:, 1] * offset[:, 0]
-    return float((cross / np.hypot(edges[:, 0], edges[:, 1])).min())
 
 
 def _up(quat: np.ndarray) -> np.ndarray:
