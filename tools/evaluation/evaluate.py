@@ -14,6 +14,7 @@ import numpy as np
 from surefoot.config.deployment import load_deployment
 from surefoot.config.typed_toml import to_table
 from surefoot.tools.evaluation.arms import arm_overrides
+from surefoot.tools.evaluation.grader import ENVELOPE_FORCES
 from surefoot.tools.evaluation.one_run import LIMIT_S, grade
 
 
@@ -123,11 +124,11 @@ def _totals(runs: list[dict], whole: list[dict]) -> list[str]:
 
 
 def _peak_shares(runs: list[dict]) -> np.ndarray:
-    """(n,) true over asked normal force at the largest force of each probe that was held to its end."""
-    asked = np.concatenate([run["probe_force"]["asked_n"] for run in runs])
-    true = np.concatenate([run["probe_force"]["true_n"] for run in runs])
-    # Forces come by rising normal force: the next one is lower where a probe ends.
-    last = np.append(np.diff(asked) < 0.0, True)[: len(asked)]
+    """(n,) true over asked normal force at the envelope's peak, of the probes that were held to their end."""
+    forces = [run["probe_force"] for run in runs]
+    index, asked, true = (np.concatenate([f[key] for f in forces]) for key in ("force_index", "asked_n", "true_n"))
+    # Forces come by rising normal force.
+    last = index == ENVELOPE_FORCES - 1
     return true[last] / np.maximum(asked[last], 1.0)
 
 

@@ -23,8 +23,8 @@ from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
 
 FALL_TILT = np.deg2rad(45.0)
 STUCK_S = 5.0  # without contact change or support below the surface
+ENVELOPE_FORCES = 6
 _CARRIES_N = 10.0  # a foot that bears this much stands
-_FORCES = 6  # of the GRF envelope
 _STOPPED_S = 3.0  # a machine that rests this long waits for a new direction
 _BELOW_M = 0.06  # a foot this far below the surface is in a hole
 _TRUTH_DT = 1.0 / TOPICS["sim/truth"].rate_hz
@@ -58,7 +58,7 @@ class Grader:
         self._probe_open: dict | None = None
         self._low_since: dict[int, float] = {}
         self._lifting: tuple[int, float] | None = None
-        self._forces: list[tuple[float, ...]] = []
+        self._held: list[tuple[float, ...]] = []
         self.counts = dict.fromkeys(
             ("footholds", "probes", "candidates_tried", "collapses_detected", "missed_collapses", "false_alarms"),
             0,
@@ -68,8 +68,8 @@ class Grader:
         self.unload: list[float] = []
         self.margin = np.inf
         self.tilt = self.saturated_s = self.energy = self.z_error = self.tilt_error = 0.0
-        self.probe_force: dict[str, list[float]] = {
-            key: [] for key in ("asked_n", "mpc_n", "wbc_n", "estimated_n", "true_n")
+        self.probe_force: dict[str, list] = {
+            key: [] for key in ("force_index", "asked_n", "mpc_n", "wbc_n", "estimated_n", "true_n")
         }
         self._squares = np.zeros(3)  # of true - MPC, estimate - true, and their count, while forces are held
         self.violation: dict[str, float] = {}
@@ -172,7 +172,7 @@ class Grader:
             return
         since = truth.t - reference.probe_t0
         index, inside = divmod(since, reference.probe_dwell_s)
-        if 0 <= index < _FORCES and inside >= 0.5 * reference.probe_dwell_s:
+        if 0 <= index < ENVELOPE_FORCES and inside >= 0.5 * reference.probe_dwell_s:
             self._hold(int(index), truth, reference)
 
     def _hold(self, index: int, truth: SimTruth, reference: MotionReference) -> None:
@@ -185,7 +185,7 @@ class Grader:
         true, seen = truth.force_W[leg] @ normal, self._estimate.force_W[leg] @ normal
         asked = reference.probe_force_W[index + 1] @ normal
         self._squares += [(true - planned) ** 2, (seen - true) ** 2, 1.0]
-        self._forces.append((index, asked, planned, self._command.force_W[leg] @ normal, seen, true))
+        self._held.append((index, asked, planned, self._command.force_W[leg] @ normal, seen, true))
 
     # Events ---------------------------------------------------------------------------------------------
 
@@ -199,13 +199,13 @@ class Grader:
         elif event.kind == "transition" and event.state == "PROBE":
             counts["probes"] += 1
             counts["candidates_tried"] += event.around == 0
-            self._forces.clear()
+            self._held.clear()
             self._probe_open = {"point": truth.p_WF[leg, :2].copy(), "force": 0.0}
         elif event.kind == "force_held":
             if self._probe_open is not None:
                 self._probe_open["force"] = max(self._probe_open["force"], event.asked_n)
-            self._close_force(event)
-            if event.force_index == _FORCES - 1:
+            self._end_force(event.force_index)
+            if event.force_index == ENVELOPE_FORCES - 1:
                 self._close_probe(collapsed=False)
         elif event.kind == "collapse":
             counts["collapses_detected"] += 1
@@ -225,11 +225,11 @@ class Grader:
         reference = self._reference
         return 0.0 if reference is None else float((reference.probe_force_W @ reference.normal_W).max(initial=0.0))
 
-    def _close_force(self, event: FsmEvent) -> None:
-        rows = [row[1:] for row in self._forces if row[0] == event.force_index]
+    def _end_force(self, index: int) -> None:
+        rows = [row for row in self._held if row[0] == index]
         if rows:
-            means = np.mean(rows, axis=0)
-            for key, value in zip(self.probe_force, means, strict=True):
+            self.probe_force["force_index"].append(index)
+            for key, value in zip(list(self.probe_force)[1:], np.mean(rows, axis=0)[1:], strict=True):
                 self.probe_force[key].append(round(float(value), 2))
 
     def _close_probe(self, collapsed: bool) -> None:
