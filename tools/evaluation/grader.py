@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -19,6 +20,7 @@ from surefoot.bus.messages import (
 from surefoot.bus.topics import TOPICS
 from surefoot.components.fsm.support_triangle import SupportTriangle
 from surefoot.config.deployment import Deployment
+from surefoot.config.robot import GRAVITY
 from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
 
 FALL_TILT = np.deg2rad(45.0)
@@ -30,6 +32,21 @@ _BELOW_M = 0.06  # a foot this far below the surface is in a hole
 _TRUTH_DT = 1.0 / TOPICS["sim/truth"].rate_hz
 
 
+@dataclass
+class _Probe:
+    """A probe that has begun.
+
+    Attributes:
+        point: (2,) where the foot truly stands [m].
+        force_n: largest normal force that it is asked for.
+        borne: every force has had its dwell.
+    """
+
+    point: np.ndarray
+    force_n: float
+    borne: bool = False
+
+
 class Grader:
     """Collects the measures of `results.json` while a run goes on.
 
@@ -39,10 +56,10 @@ class Grader:
     """
 
     def __init__(self, deployment: Deployment, end_x: float):
-        self._end_x = end_x + deployment.load_robot().foot.radius
+        robot = deployment.load_robot()
+        self._end_x = end_x + robot.foot.radius
         self._terrain = deployment.terrain.kind
-        self._press = PressTest(deployment)
-        self._verdict = lru_cache(maxsize=None)(self._collapsible)
+        self._press = lru_cache(maxsize=None)(PressTest(deployment).press)
         self.failure, self.passed, self.touching = "", False, ""
         self._moving_t = 0.0  # of the latest reference that did not ask to rest
         self._truth: SimTruth | None = None
@@ -55,7 +72,10 @@ class Grader:
         self._touched_W: dict[int, np.ndarray] = {}
         self._accepted_W: dict[int, np.ndarray] = {}
         self._sunk: set[int] = set()
-        self._probe_open: dict | None = None
+        self._probe: _Probe | None = None
+        # Until a foot has been probed: the run-up has to bear what a standing foot puts on it.
+        self._borne_n = robot.mass * GRAVITY / 4
+        self._certified_n = [self._borne_n] * 4
         self._low_since: dict[int, float] = {}
         self._lifting: tuple[int, float] | None = None
         self._held: list[tuple[float, ...]] = []
@@ -63,7 +83,9 @@ class Grader:
             ("footholds", "probes", "candidates_tried", "collapses_detected", "missed_collapses", "false_alarms"),
             0,
         )
-        self.counts |= dict.fromkeys(("late_collapses", "true_positives", "false_negatives"), 0)
+        self.counts |= dict.fromkeys(
+            ("late_collapses", "late_false_alarms", "true_positives", "false_negatives"), 0
+        )
         self.displacement: list[float] = []
         self.unload: list[float] = []
         self.margin = np.inf
@@ -200,30 +222,33 @@ class Grader:
             counts["probes"] += 1
             counts["candidates_tried"] += event.around == 0
             self._held.clear()
-            self._probe_open = {"point": truth.p_WF[leg, :2].copy(), "force": 0.0}
+            self._probe = _Probe(truth.p_WF[leg, :2].copy(), self._largest_asked())
+        elif event.kind == "transition":
+            self._end_probe()
         elif event.kind == "force_held":
-            if self._probe_open is not None:
-                self._probe_open["force"] = max(self._probe_open["force"], event.asked_n)
             self._end_force(event.force_index)
-            if event.force_index == ENVELOPE_FORCES - 1:
-                self._close_probe(collapsed=False)
+            if self._probe is not None and event.force_index == ENVELOPE_FORCES - 1:
+                self._probe.borne, self._borne_n = True, self._probe.force_n
         elif event.kind == "collapse":
             counts["collapses_detected"] += 1
             self.displacement.append(float(np.linalg.norm(truth.p_WF[leg] - self._touched_W[leg])))
             self._lifting = (leg, truth.t)
-            if self._probe_open is not None:
-                self._probe_open["force"] = self._largest_asked()
-            self._close_probe(collapsed=True)
+            self._label_collapse()
         elif event.kind == "late_collapse":
             counts["late_collapses"] += 1
+            self._label_late_collapse(leg, truth)
         elif event.kind == "accepted":
             counts["footholds"] += 1
             self._accepted_W[leg] = truth.p_WF[leg].copy()
             self._sunk.discard(leg)
+            self._certified_n[leg] = self._borne_n
 
     def _largest_asked(self) -> float:
+        """Largest normal force of the envelope; the entry before it is what was there when the foot touched."""
         reference = self._reference
-        return 0.0 if reference is None else float((reference.probe_force_W @ reference.normal_W).max(initial=0.0))
+        if reference is None:
+            return 0.0
+        return float((reference.probe_force_W[1 : 1 + ENVELOPE_FORCES] @ reference.normal_W).max(initial=0.0))
 
     def _end_force(self, index: int) -> None:
         rows = [row for row in self._held if row[0] == index]
@@ -232,29 +257,48 @@ class Grader:
             for key, value in zip(list(self.probe_force)[1:], np.mean(rows, axis=0)[1:], strict=True):
                 self.probe_force[key].append(round(float(value), 2))
 
-    def _close_probe(self, collapsed: bool) -> None:
-        """Label the probe with what the press test says of that point at the largest force asked."""
-        probe, self._probe_open = self._probe_open, None
-        if probe is None:
-            return
-        x, y = probe["point"]
-        truly = self._verdict(round(float(x), 3), round(float(y), 3), round(probe["force"]))
-        if collapsed and truly:
-            self.counts["true_positives"] += 1
-        elif collapsed:
-            self.counts["false_alarms"] += 1
-        elif truly:
-            self.counts["false_negatives"] += 1
+    def _label_collapse(self) -> None:
+        """A collapse is true where the press test says that the probed point fails the envelope's peak."""
+        probe, self._probe = self._probe, None
+        if probe is not None:
+            truly = self._verdict(*probe.point, probe.force_n)
+            self.counts["true_positives" if truly else "false_alarms"] += 1
 
-    def _collapsible(self, x: float, y: float, force_n: float) -> bool:
-        return self._press.press(x, y, force_n).collapsible
+    def _end_probe(self) -> None:
+        """A probe that ended without a collapse is false where the press test says that the point fails it.
+
+        Only a probe whose forces were all borne has trusted its point: one that was broken off says nothing.
+        """
+        probe, self._probe = self._probe, None
+        if probe is not None and probe.borne:
+            self.counts["false_negatives"] += self._verdict(*probe.point, probe.force_n)
+
+    def _label_late_collapse(self, leg: int, truth: SimTruth) -> None:
+        """A collapse of a trusted foot is false where the press test says that the ground holds.
+
+        The press is at the place where the foot truly stands when it is given up, not where it was accepted: it
+        may have slipped off. It presses with the force for which the foothold was certified, the peak of its
+        probe's envelope: what the ground was trusted with, and about the most that a stance foot gets.
+        """
+        if not self._verdict(*truth.p_WF[leg, :2], self._certified_n[leg]):
+            self.counts["false_alarms"] += 1
+            self.counts["late_false_alarms"] += 1
+
+    def _verdict(self, x: float, y: float, force_n: float) -> bool:
+        """The press test's, to the millimetre and the newton."""
+        return self._press(round(float(x), 3), round(float(y), 3), round(force_n)).collapsible
 
     # Results --------------------------------------------------------------------------------------------
 
     def results(self) -> dict:
-        """The measures of one run, as EVALUATION's `results.json` names them."""
+        """The measures of one run, as they stand in `results.json`.
+
+        `precision` is the share of all collapses called, in probes and later, that the press test bears out;
+        `recall` the share of the probed points that fail the press test whose collapse was called.
+        """
         counts, truth, start = self.counts, self._truth, self._start
         found, wrong, lost = counts["true_positives"], counts["false_alarms"], counts["false_negatives"]
+        right = found + counts["late_collapses"] - counts["late_false_alarms"]
         distance = float(truth.p_WB[0] - start.p_WB[0]) if truth is not None and start is not None else 0.0
         drift = float(np.hypot(*self._estimate_error[:2])) / abs(distance) if abs(distance) > 0.2 else None
         n = max(self._squares[2], 1.0)
@@ -264,7 +308,7 @@ class Grader:
             "body_contact": self.touching or None,
             "distance_m": distance,
             **counts,
-            "precision": found / (found + wrong) if found + wrong else None,
+            "precision": right / (right + wrong) if right + wrong else None,
             "recall": found / (found + lost) if found + lost else None,
             "displacement_at_detection_m": self.displacement,
             "unload_s": self.unload,
