@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Sequence
 from importlib.metadata import version
-from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +14,13 @@ from surefoot.config.typed_toml import to_table
 from surefoot.tools.evaluation.arms import arm_overrides
 from surefoot.tools.evaluation.grader import ENVELOPE_FORCES
 from surefoot.tools.evaluation.one_run import LIMIT_S, grade
+from surefoot.tools.evaluation.workers import Work, run_apart
+
+
+def grade_seed(scenario: Path, changes: Sequence[str], seed: int, limit_s: float) -> dict:
+    """Grade one seed of a deployment file, saying how it goes."""
+    deployment = load_deployment(scenario, [*changes, f"hw.seed={seed}"])
+    return grade(deployment, limit_s, lambda line: print(f"seed {seed}: {line}", flush=True))
 
 
 def evaluate(
@@ -26,14 +31,17 @@ def evaluate(
     overrides: Sequence[str] = (),
     jobs: int = 1,
     limit_s: float = LIMIT_S,
-    say=print,
+    say: Callable[[str], None] = print,
+    work: Work = grade_seed,
 ) -> dict:
     """Grade a deployment file over seeds; writes `results.json` after every run, so nothing is lost.
 
     Raises:
         ConfigError: the deployment or an override is wrong.
-        ValueError: no such arm.
+        ValueError: no such arm, or less than one job.
     """
+    if jobs < 1:
+        raise ValueError(f"{jobs} jobs: at least one")
     changes = [*arm_overrides(arm), *overrides]
     deployment = load_deployment(scenario, changes)
     out.mkdir(parents=True, exist_ok=True)
@@ -44,24 +52,15 @@ def evaluate(
         "version": version("surefoot"),
         "runs": [],
     }
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        waiting = {pool.submit(_one, scenario, [*changes, f"hw.seed={seed}"], limit_s): seed for seed in seeds}
-        for done in as_completed(waiting):
-            seed = waiting[done]
-            error = done.exception()
-            run = {"seed": seed, "success": False, "failure": f"error: {error}"} if error else done.result()
-            results["runs"] = sorted([*results["runs"], run], key=lambda entry: entry["seed"])
-            (out / "results.json").write_text(json.dumps(results, indent=1))
-            (out / "summary.md").write_text(summary(results))
-            verdict = "crossed" if run["success"] else run["failure"]
-            say(f"seed {seed}: {verdict}, {run.get('sim_time_s', 0.0):.0f} s simulated")
+    calls = [(scenario, changes, seed, limit_s) for seed in seeds]
+    for (_, _, seed, _), graded in run_apart(work, calls, jobs):
+        entry = {"seed": seed} | graded
+        results["runs"] = sorted([*results["runs"], entry], key=lambda each: each["seed"])
+        (out / "results.json").write_text(json.dumps(results, indent=1))
+        (out / "summary.md").write_text(summary(results))
+        verdict = "crossed" if entry["success"] else entry["failure"]
+        say(f"seed {seed}: {verdict}, {entry.get('sim_time_s', 0.0):.0f} s simulated")
     return results
-
-
-def _one(scenario: Path, changes: list[str], limit_s: float) -> dict:
-    deployment = load_deployment(scenario, changes)
-    seed = deployment.hw.seed
-    return grade(deployment, limit_s, lambda line: print(f"seed {seed}: {line}", flush=True))
 
 
 def summary(results: dict) -> str:
