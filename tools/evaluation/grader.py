@@ -164,7 +164,7 @@ class Grader:
     def _watch_accepted(self, truth: SimTruth) -> None:
         status = self._reference.leg_status if self._reference is not None else np.zeros(4, int)
         for leg, where in self._accepted_W.items():
-            if leg in self._sunk or status[leg] != LegStatus.STANCE:
+            if leg in self._sunk or status[leg] not in (LegStatus.STANCE, LegStatus.COLLAPSING):
                 continue
             if where[2] - truth.p_WF[leg, 2] > COLLAPSE_M:
                 self._sunk.add(leg)
@@ -274,13 +274,13 @@ class Grader:
             self.counts["false_negatives"] += self._verdict(*probe.point, probe.force_n)
 
     def _label_late_collapse(self, leg: int, truth: SimTruth) -> None:
-        """A collapse of a trusted foot is false where the press test says that the ground holds.
+        """A collapse of a trusted foot is false where it has not sunk and the press test says the ground holds.
 
         The press is at the place where the foot truly stands when it is given up, not where it was accepted: it
         may have slipped off. It presses with the force for which the foothold was certified, the peak of its
         probe's envelope: what the ground was trusted with, and about the most that a stance foot gets.
         """
-        if not self._verdict(*truth.p_WF[leg, :2], self._certified_n[leg]):
+        if leg not in self._sunk and not self._verdict(*truth.p_WF[leg, :2], self._certified_n[leg]):
             self.counts["false_alarms"] += 1
             self.counts["late_false_alarms"] += 1
 

@@ -334,6 +334,17 @@ def test_a_late_collapse_where_the_ground_holds_is_a_false_alarm():
         assert told.counts["false_alarms"] == told.counts["late_false_alarms"] == false
 
 
+def test_a_late_collapse_of_a_foot_that_truly_sank_is_right_wherever_it_stands():
+    told = Told(ON_PLANKS)
+    told.probe(1, GOOD)
+    told.accept(1)
+    told.status(1, LegStatus.COLLAPSING, "PRE_OPT")
+    told.foot(1, (*GOOD, told.true.p_WF[1, 2] - 0.035))
+    told.event("late_collapse", 1)
+    assert told.counts["late_collapses"] == told.counts["missed_collapses"] == 1
+    assert told.counts["false_alarms"] == 0
+
+
 def test_a_late_collapse_is_judged_by_what_its_own_foothold_was_certified_for():
     for light, heavy in ((0, 1), (1, 0)):
         told = Told(ON_PLANKS)
