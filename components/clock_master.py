@@ -64,6 +64,7 @@ class ClockMaster:
         finally:
             for name in self._remote:
                 self.session.put(f"{clock.RELEASE}/{name}", clock.pack_release(clock.STOP_NS, {}))
+            self._stepper.deactivate(self.scheduler.t_ns / NS)  # time has ended: one release is all there is
             time.sleep(0.1)  # let it leave before the session closes
             self.session.close()
         return 0

@@ -116,7 +116,10 @@ class Component:
         raise NotImplementedError
 
     def deactivate(self, t: float, inbox: Inbox, outbox: Outbox) -> bool:
-        """Called at each release of a stop until it returns true, so that a controller can ramp down."""
+        """Called at the process's rate when it is to end, until it returns true: a controller ramps down.
+
+        It must work after a failed step too. The runner waits for a second at the most.
+        """
         return True
 
     def snapshot(self) -> dict[str, Any]:

@@ -18,6 +18,8 @@ from surefoot.components.stepper import Stepper
 from surefoot.config.deployment import Deployment
 
 _LOOK_S = 0.2
+_LET_GO_S = 1.0  # shorter than the supervisor's patience
+_LEAVE_S = 0.1
 
 
 class Runner:
@@ -44,6 +46,18 @@ class Runner:
         self._stepper.connect()  # a process that is busy with itself would hold up the bus
         health.life = Life.IDLE
         try:
+            self._follow()
+        finally:
+            self._session.close()
+        return 0
+
+    def _follow(self) -> None:
+        """Step until the end, then let go of the robot, also after a failure.
+
+        In simulated time there is nothing to let go of: time stands still, and a process that takes this one's
+        place goes on where it stood.
+        """
+        try:
             if not self._monotonic:
                 self._follow_simulated_time()
             elif self._process.rate_hz:
@@ -54,8 +68,23 @@ class Runner:
             self._stepper.fail(error)
             raise
         finally:
-            self._session.close()
-        return 0
+            if self._monotonic:
+                self._let_go()
+
+    def _let_go(self) -> None:
+        """Deactivate at the process's rate, for a second at the most."""
+        period = 1.0 / (nominal_hz(self._process) or 1.0 / _LOOK_S)
+        for _ in range(round(_LET_GO_S / period)):
+            self._stepper.read_all()
+            t = self._live_t()
+            done = self._stepper.deactivate(t)
+            sent = self._stepper.publish()
+            self._stepper.tell(t)
+            if done:
+                break
+            time.sleep(period)
+        if sent:
+            time.sleep(_LEAVE_S)  # let it leave before the session closes
 
     def _follow_simulated_time(self) -> None:
         """Step at each release of the clock's master; the outputs, then the done token, answer it."""

@@ -76,12 +76,6 @@ class Scheduler:
                 self._release(name)
         self.t_ns = max(self.t_ns, t_ns)
 
-    def drain(self) -> None:
-        """Wait for every step that is still under way; its output becomes visible at once."""
-        for name in sorted(self._busy, key=self._order.__getitem__):
-            self._executors[name].collect()
-        self._busy.clear()
-
     def _release(self, name: str) -> None:
         process = self._processes[name]
         if process.rate_hz:

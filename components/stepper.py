@@ -87,6 +87,15 @@ class Stepper:
         self._inbox.clear_new()
         health.stepped(1e3 * (time.perf_counter() - begun))
 
+    def deactivate(self, t: float) -> bool:
+        """One release of a stop at time `t` [s]; true when the component has let go."""
+        failed = self.health.life is Life.FAILED
+        done = self.component.deactivate(t, self._inbox, self.outbox)
+        self._inbox.clear_new()
+        if not failed:
+            self.health.life = Life.IDLE if done else Life.DEACTIVATING
+        return done
+
     def publish(self) -> dict[str, int]:
         """Send what the step published; how many messages on each topic."""
         counts: dict[str, int] = {}
@@ -104,6 +113,7 @@ class Stepper:
 
     def fail(self, error: Exception) -> None:
         """Say what ends this process."""
+        self._outgoing.clear()  # half a step
         self.health.life, self.health.reason = Life.FAILED, f"{type(error).__name__}: {error}"
         self.tell(self.health.t, now=True)
 

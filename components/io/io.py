@@ -10,7 +10,7 @@ from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.config.deployment import Deployment
 from surefoot.hw.gate import Gate
 from surefoot.hw.mujoco.backend import MujocoRobot
-from surefoot.hw.robot_interface import MotorLaw
+from surefoot.hw.robot_interface import MotorLaw, damping_law
 
 _RATE_HZ = PROCESSES["io"].rate_hz
 
@@ -58,6 +58,13 @@ class Io(Component):
         )
         outbox.publish("sim/truth", self.robot.truth())
         self._advance(t, law)
+
+    def deactivate(self, t: float, inbox: Inbox, outbox: Outbox) -> bool:
+        """The last command damps; then the robot is let go."""
+        self.robot.write(damping_law(self.deployment.hw.damping_kd))
+        self.robot.advance()
+        self.robot.close()
+        return True
 
     def _advance(self, t: float, law: MotorLaw) -> None:
         """One cycle; on the monotonic clock those that were missed too: a simulated plant does not wait."""

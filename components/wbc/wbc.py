@@ -70,6 +70,11 @@ class Wbc(Component):
             outbox.publish("joint/command", self._balance(t, estimate, reference, policy, orphaned))
         self._last_t = t
 
+    def deactivate(self, t: float, inbox: Inbox, outbox: Outbox) -> bool:
+        """Brakes every joint, rather than leave it to io to find the last torques too old."""
+        outbox.publish("joint/command", self._damp(t, "wbc ends"))
+        return True
+
     def _damp(self, t: float, why: str) -> JointCommand:
         return JointCommand(t=t, valid=True, kd=np.full(12, self._settings.damping_kd), solver=why or "ok")
 

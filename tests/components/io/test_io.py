@@ -54,3 +54,13 @@ def test_the_backend_is_the_deployments_choice(monkeypatch):
     assert set(BACKENDS) == set(get_args(get_type_hints(Hw)["backend"]))
     monkeypatch.setitem(BACKENDS, "other", lambda deployment: deployment.hw.seed)
     assert Io(Deployment(hw=Hw(backend="other", seed=5))).robot == 5
+
+
+def test_when_it_ends_the_robot_is_damped_and_closed():
+    io = Io(Deployment())
+    run(io, 50, hold)
+    closed = []
+    io.robot.close = lambda: closed.append(io.robot._laws[-1][1])
+    assert io.deactivate(0.1, Inbox(io.inputs), Outbox(io.outputs, lambda key, message: None))
+    (last,) = closed
+    assert not last.kp.any() and not last.tau.any() and (last.kd == Deployment().hw.damping_kd).all()
