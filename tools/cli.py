@@ -11,7 +11,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     # Before numpy is imported: its threads would fight the control chain for the cores.
     os.environ.setdefault(_name, "1")
 
-from surefoot.bus.errors import BusError  # noqa: E402
+from surefoot.bus.errors import BusError, MessageError  # noqa: E402
 from surefoot.config.typed_toml import ConfigError  # noqa: E402
 
 _LISTEN_S = 1.5
@@ -33,14 +33,24 @@ exit code: 0 crossed, time up or ended by the user; 1 fell, stopped or a process
 """
 
 
+class CallError(ValueError):
+    """A command that cannot be run as it was called; says what would be right."""
+
+
 def main(arguments: list[str] | None = None) -> int:
-    """Run one command; returns the exit code: 0 done, 1 the run failed, 2 the call was wrong."""
+    """Run one command; returns the exit code: 0 done, 1 the run failed, 2 the call was wrong.
+
+    Only what a user can mend is told in a line. An error of the program keeps its traceback: a process's log
+    is where it will be looked for.
+    """
     parser = _parser()
     call = parser.parse_args(arguments)
     try:
         return call.run(call)
-    except (ConfigError, BusError, ValueError, KeyError) as error:
-        print(f"surefoot: {error.args[0] if error.args else error}", file=sys.stderr)
+    except MessageError:
+        raise  # a component has published what its topic does not allow
+    except (CallError, ConfigError, BusError) as error:
+        print(f"surefoot: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
@@ -128,7 +138,7 @@ def _child(call: argparse.Namespace) -> int:
 
     deployment = load_deployment(_deployment_file(call.config), call.set)
     if call.name not in PROCESSES:
-        raise ValueError(f"no process {call.name!r}; there are {', '.join(PROCESSES)}")
+        raise CallError(f"no process {call.name!r}; there are {', '.join(PROCESSES)}")
     if call.name != "io":
         return Runner(deployment, call.name, call.boot, call.parent).run()
     if deployment.run.clock == "simulated":
@@ -141,7 +151,7 @@ def _command(call: argparse.Namespace) -> int:
     from surefoot.components.fsm.fsm import COMMANDS
 
     if call.command not in COMMANDS:
-        raise ValueError(f"unknown command {call.command!r}; there are {', '.join(COMMANDS)}")
+        raise CallError(f"unknown command {call.command!r}; there are {', '.join(COMMANDS)}")
     _say_on_bus(call.namespace, REQUEST, call.command)
     return 0
 
@@ -152,7 +162,7 @@ def _restart(call: argparse.Namespace) -> int:
 
     if call.name not in PROCESSES or call.name == "io":
         names = ", ".join(name for name in PROCESSES if name != "io")
-        raise ValueError(f"cannot restart {call.name!r}; processes that can be: {names} (io holds robot and bus)")
+        raise CallError(f"cannot restart {call.name!r}; processes that can be: {names} (io holds robot and bus)")
     _say_on_bus(call.namespace, REQUEST, f"restart {call.name}")
     return 0
 
@@ -227,7 +237,7 @@ def _seeds(text: str) -> list[int]:
             return list(range(int(first), int(end)))
         return [int(each) for each in text.split(",")]
     except ValueError:
-        raise ValueError(f"--seeds {text!r}: want first:end such as 0:10, or a list such as 0,3,7") from None
+        raise CallError(f"--seeds {text!r}: want first:end such as 0:10, or a list such as 0,3,7") from None
 
 
 if __name__ == "__main__":

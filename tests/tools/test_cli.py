@@ -2,6 +2,10 @@
 
 import pytest
 
+from surefoot.bus.codec import check
+from surefoot.bus.errors import MessageError
+from surefoot.bus.messages import HardwareState
+from surefoot.tools import cli
 from surefoot.tools.cli import main
 
 
@@ -17,6 +21,8 @@ from surefoot.tools.cli import main
         (["command", "jump"], "there are forward"),
         (["child", "flat", "engine"], "no process 'engine'"),
         (["eval", "flat", "--seeds", "x", "--out", "out"], "--seeds 'x'"),
+        (["eval", "flat", "--arm", "half", "--out", "out"], "no arm 'half'; there are full"),
+        (["eval", "flat", "--arm", "threshold=high", "--out", "out"], "fsm.collapse_m = 'high': expected float"),
     ],
 )
 def test_a_wrong_call_is_answered_by_what_would_be_right(call, words, capsys):
@@ -29,3 +35,17 @@ def test_a_malformed_file_is_named_with_its_line(tmp_path, capsys):
     path.write_text("[hw]\nseed = \n")
     assert main(["run", str(path)]) == 2
     assert "broken.toml is not valid TOML" in (said := capsys.readouterr().err) and "line 2" in said
+
+
+@pytest.mark.parametrize(
+    ("kind", "fault"),
+    [
+        (ValueError, lambda: int("seven")),
+        (KeyError, lambda: {}["leg"]),
+        (MessageError, lambda: check(HardwareState(t=float("nan")))),
+    ],
+)
+def test_an_error_of_the_program_keeps_its_traceback(kind, fault, monkeypatch):
+    monkeypatch.setattr(cli, "_child", lambda call: fault())
+    with pytest.raises(kind):
+        main(["child", "flat", "io"])

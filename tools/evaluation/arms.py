@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from surefoot.config.typed_toml import ConfigError
+
 ARMS = {
     "full": (),
     "mpc_only": ("fsm.probing=false", "fsm.support_polygon=false"),
@@ -18,12 +20,12 @@ def arm_overrides(arm: str) -> tuple[str, ...]:
     """The overrides of an arm.
 
     Raises:
-        ValueError: no such arm, or its figure is missing; the message lists the arms.
+        ConfigError: no such arm, or its figure is missing; the message lists the arms.
     """
     name, equals, figure = arm.partition("=")
     if name in FIGURED and figure:
-        return (f"{FIGURED[name]}={float(figure)}",)
+        return (f"{FIGURED[name]}={figure}",)
     if name in ARMS and not equals:
         return ARMS[name]
     known = ", ".join([*ARMS, *(f"{each}=FIGURE" for each in FIGURED)])
-    raise ValueError(f"no arm {arm!r}; there are {known}")
+    raise ConfigError(f"no arm {arm!r}; there are {known}")

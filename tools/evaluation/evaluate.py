@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from surefoot.config.deployment import load_deployment
-from surefoot.config.typed_toml import to_table
+from surefoot.config.typed_toml import ConfigError, to_table
 from surefoot.tools.evaluation.arms import arm_overrides
 from surefoot.tools.evaluation.grader import ENVELOPE_FORCES
 from surefoot.tools.evaluation.one_run import LIMIT_S, grade
@@ -37,11 +37,10 @@ def evaluate(
     """Grade a deployment file over seeds; writes `results.json` after every run, so nothing is lost.
 
     Raises:
-        ConfigError: the deployment or an override is wrong.
-        ValueError: no such arm, or less than one job.
+        ConfigError: the deployment, an override or the arm is wrong, or there is less than one job.
     """
     if jobs < 1:
-        raise ValueError(f"{jobs} jobs: at least one")
+        raise ConfigError(f"--jobs {jobs}: at least one")
     changes = [*arm_overrides(arm), *overrides]
     deployment = load_deployment(scenario, changes)
     out.mkdir(parents=True, exist_ok=True)

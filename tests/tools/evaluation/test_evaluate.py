@@ -102,7 +102,7 @@ def test_a_wrong_call_runs_nothing(scenario):
         evaluate(scenario, [0], out, arm="half")
     with pytest.raises(ConfigError, match="did you mean"):
         evaluate(scenario, [0], out, overrides=["fsm.gaol_m=1.0"])
-    with pytest.raises(ValueError, match="0 jobs"):
+    with pytest.raises(ConfigError, match="--jobs 0: at least one"):
         evaluate(scenario, [0], out, jobs=0)
     assert not out.exists()
 
