@@ -27,6 +27,10 @@ REQUEST = "supervisor/request"
 MAX_CRASHES = 3
 """In simulation a process that ends by itself is started again as often as this."""
 
+HOLDS_ROBOT = ("estimator", "wbc", "fsm")
+"""On the monotonic clock these are restarted only while the robot is damped: they keep no memory of what they do.
+The others may be at any time: the whole-body controller holds the base meanwhile."""
+
 _KILL_AFTER_S = 3.0
 _LOOK_S = 0.1
 _HUB_S = 60.0
@@ -103,11 +107,22 @@ class Supervisor:
             self.note(f"cannot restart {name!r}: there are {', '.join(PROCESSES)}")
         elif name == "io":
             self.note("cannot restart io: it holds the robot and the bus; stop the run instead")
+        elif name in HOLDS_ROBOT and not self._simulated and self._state != "DAMP":
+            self.note(
+                f"cannot restart {name} in state {self._state or 'unknown'}: in real time nothing waits for it, "
+                "and it begins without memory of what the robot does; `surefoot command sit` first, or end the run"
+            )
         else:
             watched = self.picture.processes[name]
             self._end(watched)
             self._start_again(watched)
             self.note(f"{name} restarted on request")
+
+    @property
+    def _state(self) -> str:
+        """Of the state machine; empty before it has spoken."""
+        reference = self.picture.reference
+        return reference.state if reference is not None else ""
 
     def note(self, words: str) -> None:
         """Say something on the display and in the supervisor's log."""
@@ -132,8 +147,8 @@ class Supervisor:
 
     def _start_again(self, watched: Watched) -> None:
         watched.restarts += 1
-        if watched.name == "fsm" and component_class("fsm").snapshot is Component.snapshot:
-            # It keeps no memory of what the robot does, and would begin by damping it.
+        if self._simulated and watched.name == "fsm" and component_class("fsm").snapshot is Component.snapshot:
+            # It keeps no memory of what the robot does, and would begin by damping it. In real time it is damped.
             self._command("stand")
             self.note("fsm has lost its place and stands the robot: `surefoot command forward` goes on")
         self._start(watched.name)
