@@ -19,8 +19,9 @@ _LISTEN_S = 1.5
 _RUN = """\
 Start every process of a deployment and show how it goes, on one screen.
 
-The run ends when the platform is crossed, when the robot has fallen or lost its estimate, after --for seconds of
-its time, or with Ctrl-C; then every process is ended in order. A robot that finds no safe foothold goes back to
+The run ends when the goal is reached (on the planks: the platform is crossed), when the robot has fallen, has lost
+its estimate or is damped with `surefoot command damp`, after --for seconds of its time, or with Ctrl-C; then every
+process is ended in order. A robot that finds no safe foothold goes back to
 its last one and stands: on a terminal the run goes on and waits for `surefoot command backward` (or left,
 right, forward, stop) from another one; with --plain, or without a terminal, that ends the run.
 
@@ -30,7 +31,7 @@ direction). With --set run.clock=monotonic it keeps real time; a machine that ca
 enough says so and runs its light profile, and estimator, wbc and fsm are restarted only while the robot is
 damped.
 
-exit code: 0 crossed, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
+exit code: 0 goal reached, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
 """
 
 

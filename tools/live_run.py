@@ -30,7 +30,7 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
         plain: lines even where there is a terminal.
 
     Returns:
-        0 the platform was crossed, or it was ended in time or by the user; 1 it failed.
+        0 the goal was reached, or it was ended in time or by the user; 1 it failed.
     """
     console = Console(soft_wrap=True)
     overrides = list(overrides)
@@ -51,7 +51,7 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
 
     def until(picture: Picture) -> str:
         nonlocal state
-        state = verdict(picture, seconds, interactive)
+        state = verdict(picture, deployment.terrain.kind, seconds, interactive)
         return state.reason if state.over else ""
 
     console.print(f"{title}; logs in {deployment.run.log_dir}/; Ctrl-C ends the run")

@@ -12,6 +12,7 @@ import pinocchio as pin
 
 from surefoot.bus.messages import FsmEvent, MotionReference, ProcessStatus, StateEstimate
 from surefoot.bus.topics import PROCESSES
+from surefoot.components.fsm.fsm import DIRECTIONS
 from surefoot.components.fsm.support_triangle import SupportTriangle
 from surefoot.components.robot_model import build_model
 from surefoot.config.robot import Robot
@@ -43,6 +44,7 @@ class Picture:
         events: of the state machine, oldest first.
         counts: how many events of each kind.
         displacement_m: the largest of a foot on the ground.
+        direction: of the walk that was commanded last; empty before.
         notes: what the supervisor did, in words.
     """
 
@@ -53,6 +55,7 @@ class Picture:
     events: list[FsmEvent] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
     displacement_m: float = 0.0
+    direction: str = ""
     notes: list[str] = field(default_factory=list)
     _clock: deque[tuple[float, float]] = field(default_factory=deque)
     _first: tuple[float, float] | None = None
@@ -72,6 +75,11 @@ class Picture:
         self.events.append(event)
         self.counts[event.kind] += 1
         self.displacement_m = max(self.displacement_m, event.displacement_m)
+
+    def note_command(self, command: str) -> None:
+        """Take in what the robot was told."""
+        if command in DIRECTIONS:
+            self.direction = command
 
     def note_status(self, status: ProcessStatus) -> None:
         """Take in what a process says of itself."""

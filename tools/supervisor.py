@@ -12,7 +12,7 @@ from pathlib import Path
 
 from surefoot.bus.codec import decode
 from surefoot.bus.errors import BusError, MessageError
-from surefoot.bus.messages import FsmEvent, MotionReference, ProcessStatus, StateEstimate
+from surefoot.bus.messages import FsmEvent, MotionReference, OperatorCommand, ProcessStatus, StateEstimate
 from surefoot.bus.session import Session, refuse_second_hub
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
@@ -225,6 +225,7 @@ class Supervisor:
         self._newest = {key: session.newest(key) for key in ("state/estimate", "fsm/reference")}
         session.subscribe("status/*", self._on_status)
         session.subscribe("fsm/event", self._on_event)
+        session.subscribe("operator/command", self._on_command)
         session.subscribe(REQUEST, lambda key, payload: self._requests.append(payload.decode(errors="replace")))
 
     def _command(self, command: str) -> None:
@@ -254,3 +255,7 @@ class Supervisor:
     def _on_event(self, key: str, payload: bytes) -> None:
         with suppress(MessageError):
             self.picture.note_event(decode(FsmEvent, payload))
+
+    def _on_command(self, key: str, payload: bytes) -> None:
+        with suppress(MessageError):
+            self.picture.note_command(decode(OperatorCommand, payload).command)

@@ -24,19 +24,28 @@ class Verdict:
     advice: str = ""
 
 
-def verdict(picture: Picture, seconds: float, interactive: bool) -> Verdict:
+def verdict(picture: Picture, terrain: str, seconds: float, interactive: bool) -> Verdict:
     """The verdict of the moment.
 
-    The run is over when the platform is crossed, the robot has fallen or lost its estimate, or `seconds` of its
-    time have passed (0: no limit). A robot that found no safe foothold stands and waits for a person; where
-    there is none, that ends the run too.
+    The run is over when the goal is reached, the robot has fallen, lost its estimate or been damped by a person,
+    or `seconds` of its time have passed (0: no limit). A robot that found no safe foothold stands and waits for a
+    person; where there is none, that ends the run too.
+
+    Args:
+        picture: what has been heard.
+        terrain: its kind; a goal reached forward on planks is the other side.
+        seconds: limit of the run's time.
+        interactive: a person watches.
     """
     reference = picture.reference
     if reference is None:
         return Verdict()
     if reference.finished:
-        return Verdict("platform crossed", over=True, good=True)
+        crossed = terrain == "planks" and picture.direction == "forward"
+        return Verdict("platform crossed" if crossed else "goal reached", over=True, good=True)
     if reference.state == "DAMP":
+        if reference.reason == "commanded":  # it was not damped before: at the start nobody has commanded it
+            return Verdict("damped by command", over=True, good=True)
         if "fallen" in reference.reason:
             advice = (
                 "see the last events and the logs; `surefoot run` begins anew, `--set hw.seed=N` with other noise"

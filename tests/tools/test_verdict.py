@@ -9,12 +9,15 @@ from surefoot.tools.picture import Picture
 from surefoot.tools.verdict import verdict
 
 
-def judged(interactive=False, seconds=0.0, **reference):
-    return verdict(Picture(reference=MotionReference(t=5.0, **reference)), seconds, interactive)
+def judged(interactive=False, seconds=0.0, terrain="planks", commands=("forward",), **reference):
+    picture = Picture(reference=MotionReference(t=5.0, **reference))
+    for command in commands:
+        picture.note_command(command)
+    return verdict(picture, terrain, seconds, interactive)
 
 
 def test_nothing_is_said_before_anything_is_heard_and_while_the_robot_walks():
-    assert not verdict(Picture(), 1.0, False).over
+    assert not verdict(Picture(), "flat", 1.0, False).over
     assert judged(state="PROBE").reason == ""
 
 
@@ -22,6 +25,22 @@ def test_the_goal_and_the_time_are_good_ends():
     assert judged(state="STOPPED", finished=True).good
     assert judged(state="PROBE", seconds=5.0).good
     assert not judged(state="PROBE", seconds=5.1).over
+
+
+def test_only_planks_walked_forward_are_a_platform_crossed():
+    finished = {"state": "STOPPED", "finished": True}
+    assert judged(**finished).reason == "platform crossed"
+    assert judged(commands=("backward", "stop", "forward", "stand"), **finished).reason == "platform crossed"
+    assert judged(commands=("forward", "left"), **finished).reason == "goal reached"
+    assert judged(terrain="flat", **finished).reason == "goal reached"
+
+
+@pytest.mark.parametrize("interactive", [True, False])
+def test_a_person_who_damps_the_robot_ends_the_run_and_a_start_in_damping_does_not(interactive):
+    end = judged(interactive, state="DAMP", reason="commanded")
+    assert end.over and end.good and end.reason == "damped by command"
+    for reason in ("waiting for a command", "sitting"):
+        assert not judged(interactive, state="DAMP", reason=reason).over
 
 
 @pytest.mark.parametrize(
