@@ -8,6 +8,7 @@ from surefoot.bus.messages import MotionReference
 from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
+from surefoot.components.robot_model.rotations import matrices_of_rpy
 from surefoot.config.robot import GRAVITY, Robot
 
 
@@ -106,16 +107,6 @@ class MotionSampler:
 def _unit(share: np.ndarray) -> np.ndarray:
     """Clipped to [0, 1]; `np.clip` costs three times as much at this length."""
     return np.minimum(np.maximum(share, 0.0), 1.0)
-
-
-def matrices_of_rpy(rpy: np.ndarray) -> np.ndarray:
-    """(n, 3, 3) R = Rz(yaw) Ry(pitch) Rx(roll) of (n, 3) angles."""
-    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy).T, np.sin(rpy).T
-    R = np.empty((len(rpy), 3, 3))
-    R[:, 0, 0], R[:, 0, 1], R[:, 0, 2] = cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr
-    R[:, 1, 0], R[:, 1, 1], R[:, 1, 2] = sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr
-    R[:, 2, 0], R[:, 2, 1], R[:, 2, 2] = -sp, cp * sr, cp * cr
-    return R
 
 
 _NO_REGION_A, _NO_REGION_B = np.zeros((4, 4, 3)), np.zeros((4, 4))

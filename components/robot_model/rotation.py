@@ -71,13 +71,15 @@ def quaternion_of(R: np.ndarray) -> np.ndarray:
 def matrix_of_rpy(rpy: np.ndarray) -> np.ndarray:
     """R = Rz(yaw) Ry(pitch) Rx(roll), (3, 3)."""
     roll, pitch, yaw = np.asarray(rpy).tolist()
-    cr, sr, cp, sp, cy, sy = cos(roll), sin(roll), cos(pitch), sin(pitch), cos(yaw), sin(yaw)
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
+    return np.array(rows_of_rpy(cos(roll), cos(pitch), cos(yaw), sin(roll), sin(pitch), sin(yaw)))
+
+
+def rows_of_rpy(cr, cp, cy, sr, sp, sy) -> tuple:
+    """The rows of Rz(yaw) Ry(pitch) Rx(roll) from cosines and sines of roll, pitch, yaw: of one or of many."""
+    return (
+        (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+        (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+        (-sp, cp * sr, cp * cr),
     )
 
 

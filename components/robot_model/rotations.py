@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from surefoot.components.robot_model.rotation import skew
+from surefoot.components.robot_model.rotation import rows_of_rpy, skew
 
 _EYE3 = np.eye(3)
 
@@ -48,6 +48,14 @@ def quaternions_of(R: np.ndarray) -> np.ndarray:
     np.subtract(R[:, 1, 0], R[:, 0, 1], out=quat[:, 2])
     quat[:, :3] *= (0.25 / w)[:, None]
     return quat
+
+
+def matrices_of_rpy(rpy: np.ndarray) -> np.ndarray:
+    """(N, 3, 3) R = Rz(yaw) Ry(pitch) Rx(roll) of (N, 3) angles."""
+    R = np.empty((len(rpy), 3, 3))
+    for i, row in enumerate(rows_of_rpy(*np.cos(rpy).T, *np.sin(rpy).T)):
+        R[:, i, 0], R[:, i, 1], R[:, i, 2] = row
+    return R
 
 
 def _squared_length(vectors: np.ndarray) -> np.ndarray:

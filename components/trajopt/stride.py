@@ -8,7 +8,7 @@ from surefoot.bus.messages import MotionReference, PlanRequest
 from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
-from surefoot.components.robot_model.rotation import matrix_of_rpy
+from surefoot.components.robot_model.rotations import matrices_of_rpy
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import GRAVITY, Robot
 from surefoot.config.trajopt import Trajopt
@@ -56,7 +56,7 @@ class Stride:
             region_active[after, leg] = request.region_active[leg]
         share = (t / t[-1])[:, None]
         pose = base_now + share * (request.base_target - base_now)
-        R_WB = np.array([matrix_of_rpy(rpy) for rpy in pose[:, 3:]])
+        R_WB = matrices_of_rpy(pose[:, 3:])
         force_W = np.zeros((nodes, 4, 3))
         force_W[..., 2] = contact * (self._weight / contact.sum(axis=1))[:, None]
         off = np.full(nodes, -1)

@@ -4,10 +4,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from surefoot.components.robot_model.rotation import matrix_of_rpy
 from surefoot.components.robot_model.rotations import (
     exp_rotations,
     exp_rotations_and_jacobians,
     log_rotations,
+    matrices_of_rpy,
     quaternions_of,
 )
 
@@ -27,3 +29,10 @@ def test_right_jacobians_are_good_to_the_order_of_their_series():
     R, jacobian = exp_rotations_and_jacobians(phi)
     np.testing.assert_array_equal(R, exp_rotations(phi))
     np.testing.assert_allclose(jacobian, [pin.Jexp3(p) for p in phi], atol=1e-6)
+
+
+def test_roll_pitch_yaw_of_one_and_of_many():
+    rpy = np.random.default_rng(0).uniform(-1.5, 1.5, (30, 3))
+    R = matrices_of_rpy(rpy)
+    np.testing.assert_allclose(R, [pin.rpy.rpyToMatrix(*angles) for angles in rpy], atol=1e-15)
+    np.testing.assert_allclose(R, [matrix_of_rpy(angles) for angles in rpy], atol=1e-15)
