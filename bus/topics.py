@@ -48,6 +48,14 @@ class Process:
     budget_s: float = 0.0
 
 
+CYCLE_HZ = 500.0
+"""Of the robot's interface: how often its sensors are read and its motors get a command."""
+
+_WBC_EVERY = 2
+"""The whole-body controller steps on every n-th cycle."""
+
+_FSM_HZ = 250.0
+
 MPC_RATE_HZ = {"paper": 100.0, "light": 50.0}
 """Of each profile of the MPC; a solve may take its whole period."""
 
@@ -56,11 +64,11 @@ def processes(mpc_profile: str = "paper") -> dict[str, Process]:
     """The process table, in the order in which processes released at the same instant step."""
     mpc_hz = MPC_RATE_HZ[mpc_profile]
     table = (
-        Process("io", rate_hz=500.0),
+        Process("io", rate_hz=CYCLE_HZ),
         Process("estimator", trigger="hw/state", budget_s=0.001),
-        Process("wbc", trigger="state/estimate", every=2, budget_s=0.001),
+        Process("wbc", trigger="state/estimate", every=_WBC_EVERY, budget_s=0.001),
         Process("mpc", rate_hz=mpc_hz, budget_s=1.0 / mpc_hz),
-        Process("fsm", rate_hz=250.0, budget_s=0.002),
+        Process("fsm", rate_hz=_FSM_HZ, budget_s=0.002),
         Process("trajopt", trigger="trajopt/request", budget_s=0.100),
         Process("elevation_map", trigger="foothold/request", budget_s=0.020),
     )
@@ -73,10 +81,10 @@ PROCESSES = processes()
 TOPICS = {
     topic.key: topic
     for topic in (
-        Topic("hw/state", m.HardwareState, "io", 500.0, 0.040),
-        Topic("joint/command", m.JointCommand, "wbc", 250.0, 0.040),
-        Topic("state/estimate", m.StateEstimate, "estimator", 500.0, 0.040),
-        Topic("fsm/reference", m.MotionReference, "fsm", 250.0, 0.100),
+        Topic("hw/state", m.HardwareState, "io", CYCLE_HZ, 0.040),
+        Topic("joint/command", m.JointCommand, "wbc", CYCLE_HZ / _WBC_EVERY, 0.040),
+        Topic("state/estimate", m.StateEstimate, "estimator", CYCLE_HZ, 0.040),
+        Topic("fsm/reference", m.MotionReference, "fsm", _FSM_HZ, 0.100),
         Topic("fsm/event", m.FsmEvent, "fsm"),
         Topic("mpc/policy", m.Policy, "mpc", MPC_RATE_HZ["paper"], 0.100),
         Topic("trajopt/request", m.PlanRequest, "fsm"),
@@ -84,7 +92,7 @@ TOPICS = {
         Topic("foothold/request", m.FootholdRequest, "fsm"),
         Topic("foothold/regions", m.FootholdRegions, "elevation_map"),
         Topic("operator/command", m.OperatorCommand, "operator"),
-        Topic("sim/truth", m.SimTruth, "io", 500.0),
+        Topic("sim/truth", m.SimTruth, "io", CYCLE_HZ),
         *(Topic(f"status/{name}", m.ProcessStatus, name, 2.0, 2.0) for name in PROCESSES),
     )
 }

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import ClassVar
 
 from surefoot.bus.messages import HardwareState
-from surefoot.bus.topics import PROCESSES
+from surefoot.bus.topics import CYCLE_HZ
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.config.deployment import Deployment
 from surefoot.hw.gate import Gate
 from surefoot.hw.mujoco.backend import MujocoRobot
 from surefoot.hw.robot_interface import MotorLaw, damping_law
-
-_RATE_HZ = PROCESSES["io"].rate_hz
 
 BACKENDS = {"mujoco": MujocoRobot}
 """The robot interface behind each name of `hw.backend`."""
@@ -70,7 +68,7 @@ class Io(Component):
         """One cycle; on the monotonic clock those that were missed too: a simulated plant does not wait."""
         if self._began is None:
             self._began = t
-        due = round((t - self._began) * _RATE_HZ) + 1
+        due = round((t - self._began) * CYCLE_HZ) + 1
         for _ in range(max(due - self._cycles, 0)):
             self.robot.write(law)
             self.robot.advance()

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from surefoot.bus.messages import SimTruth
+from surefoot.bus.topics import CYCLE_HZ
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import LEGS
 from surefoot.hw.errors import HardwareFault
@@ -15,8 +16,8 @@ from surefoot.hw.mujoco.plant import draw_plant, stream
 from surefoot.hw.mujoco.scene import PHYSICS_DT, build_scene
 from surefoot.hw.robot_interface import MotorLaw, Sensors, damping_law
 
-STEPS_PER_CYCLE = 2
-"""Physics steps in one cycle of the interface (500 Hz)."""
+STEPS_PER_CYCLE = round(1.0 / (CYCLE_HZ * PHYSICS_DT))
+"""Physics steps in one cycle of the interface."""
 
 _SETTLE_S = 2.0
 _HOLD_KP, _HOLD_KD = 300.0, 8.0  # [N m/rad], [N m s/rad]: stiff enough to sag by millimetres only
