@@ -99,7 +99,7 @@ class MotionReference(Message):
     mode: int = integer("a ControlMode")
     leg: int = integer("leg being moved or probed; -1 none", default=-1)
     candidate: int = integer("0 the planned foothold, 1..3 the alternatives")
-    around: int = integer("0 the foothold itself, 1..4 the points around it")
+    around: int = integer("0 the foothold, 1..4 front, back, left, right of it, 5 back on it")
     force_index: int = integer("which of the six forces is applied; -1 none", default=-1)
     finished: bool = flag("the machine has reached its goal and stands")
 
@@ -159,7 +159,11 @@ class Policy(Message):
     contact: np.ndarray = array(-1, 4, doc="planned contact of the N+1 nodes", dtype="bool")
     solver: str = text("'ok', or what failed by name")
     constraint: tuple[str, ...] = names("names of the constraints in `violation`")
-    violation: np.ndarray = array(-1, doc="largest violation of each constraint over the horizon, in its unit")
+    violation: np.ndarray = array(
+        -1,
+        doc="largest violation of each constraint over the horizon, in its unit, by the trajectory this tick "
+        "started from: the one before the step that gave `x` and `u`",
+    )
     stage: tuple[str, ...] = names("names of the stages in `stage_ms`")
     stage_ms: np.ndarray = array(-1, doc="wall time of each stage of this tick", unit="ms", volatile=True)
 
@@ -220,13 +224,16 @@ class FootholdRegions(Message):
 class FsmEvent(Message):
     """`fsm/event`: a transition, or a verdict on a foothold, with its reason."""
 
-    kind: str = text("transition, contact, force_held, collapse, accepted, rejected, stopped, late_collapse")
+    kind: str = text(
+        "transition; contact, force_held, collapse, accepted, rejected: of the leg that is moved; late_collapse: "
+        "of a foothold accepted before; stopped; refused, waiting: of a command"
+    )
     state: str = text("state entered or active")
     reason: str = text("in words, with figures")
     leg: int = integer("-1 none", default=-1)
-    candidate: int = integer("")
-    around: int = integer("")
-    force_index: int = integer("", default=-1)
+    candidate: int = integer("as in MotionReference")
+    around: int = integer("as in MotionReference")
+    force_index: int = integer("which of the six forces was held or made the ground give way; -1 none", default=-1)
     p_WF: np.ndarray = array(3, doc="foot centre at the event", unit="m")
     displacement_m: float = number("from the stored contact position", "m")
     asked_n: float = number("normal force asked", "N")
