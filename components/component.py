@@ -90,11 +90,18 @@ class Outbox:
 
 
 class Component:
-    """Base of every component. Class attributes say its name, inputs and outputs; `bus.topics` its timing."""
+    """Base of every component. Class attributes say its name, inputs and outputs; `bus.topics` its timing.
+
+    Attributes:
+        trouble: in words why the last step could not do its work; empty when it could. The process's status
+            tells it.
+    """
 
     name: ClassVar[str]
     inputs: ClassVar[tuple[str, ...]] = ()
     outputs: ClassVar[tuple[str, ...]] = ()
+
+    trouble: str = ""
 
     def __init__(self, deployment: Deployment):
         self.deployment = deployment

@@ -82,4 +82,5 @@ class Health:
     def _words(self) -> str:
         """All there is to say, the gravest first."""
         bad = f"dropped {self._buffers.last_error}" if self._buffers.bad else ""
-        return "; ".join(words for words in (self.reason, self.lost, bad) if words)
+        said = self.reason, self._component.trouble, self.lost, bad
+        return "; ".join(words for words in said if words)

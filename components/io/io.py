@@ -40,6 +40,7 @@ class Io(Component):
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         sensors = self.robot.read()
         law = self._gate.law(inbox.latest("joint/command"), t)
+        self.trouble = self._gate.reason
         outbox.publish(
             "hw/state",
             HardwareState(

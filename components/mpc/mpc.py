@@ -75,7 +75,9 @@ class Mpc(Component):
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         estimate, reference = inbox.fresh("state/estimate", t), inbox.fresh("fsm/reference", t)
-        if estimate is None or reference is None or reference.mode != ControlMode.BALANCE:
+        lost = "state/estimate" if estimate is None else "fsm/reference" if reference is None else ""
+        self.trouble = f"{lost} is missing or stale" if lost else ""
+        if lost or reference.mode != ControlMode.BALANCE:
             self._iterate = None
             return
         watch = _Stopwatch()
@@ -89,8 +91,8 @@ class Mpc(Component):
         try:
             step = self._problem.iterate(start, nodes, measured, watch.mark)
         except SolverFailed as error:
-            self._iterate = None
-            outbox.publish("mpc/policy", Policy(t=begins, dt=self._dt, solver=str(error)))
+            self._iterate, self.trouble = None, str(error)
+            outbox.publish("mpc/policy", Policy(t=begins, dt=self._dt, solver=self.trouble))
             return
         self._iterate, self._contact, self._t = step.iterate, nodes.contact, begins
         self._publish(begins, nodes, step, watch, outbox)

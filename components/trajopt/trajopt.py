@@ -39,9 +39,11 @@ class Trajopt(Component):
             estimate = inbox.fresh("state/estimate", t)
             if estimate is None:
                 why = "no fresh state/estimate: is the estimator running?"
-                outbox.publish("trajopt/plan", Plan(t=t, id=request.id, status=why))
-                continue
-            outbox.publish("trajopt/plan", self._plan(t, request, estimate))
+                plan = Plan(t=t, id=request.id, status=why)
+            else:
+                plan = self._plan(t, request, estimate)
+            self.trouble = "" if plan.status == "ok" else plan.status
+            outbox.publish("trajopt/plan", plan)
 
     def _plan(self, t: float, request: PlanRequest, estimate: StateEstimate) -> Plan:
         begun = perf_counter()

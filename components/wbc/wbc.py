@@ -59,15 +59,17 @@ class Wbc(Component):
             self._target.reset()
             self._observer.reset()
         if lost:
-            outbox.publish("joint/command", self._damp(t, f"{lost} is missing or stale"))
+            command = self._damp(t, f"{lost} is missing or stale")
         elif not reference.valid or reference.mode == ControlMode.DAMP:
-            outbox.publish("joint/command", self._damp(t, ""))
+            command = self._damp(t, "")
         elif reference.mode == ControlMode.JOINT:
-            outbox.publish("joint/command", self._posture(t, reference))
+            command = self._posture(t, reference)
         else:
             orphaned = inbox.fresh("fsm/reference", t) is None
             policy = None if orphaned else inbox.fresh("mpc/policy", t)
-            outbox.publish("joint/command", self._balance(t, estimate, reference, policy, orphaned))
+            command = self._balance(t, estimate, reference, policy, orphaned)
+        self.trouble = "" if command.solver == "ok" else command.solver
+        outbox.publish("joint/command", command)
         self._last_t = t
 
     def deactivate(self, t: float, inbox: Inbox, outbox: Outbox) -> bool:

@@ -36,9 +36,11 @@ def test_every_cycle_says_what_the_sensors_and_the_gate_saw():
 
 
 def test_without_a_controller_the_robot_damps_and_says_why():
-    published = run(Io(Deployment()), 5)
-    state = published[-2][1]
-    assert state.damping and state.gate == "no command yet"
+    io = Io(Deployment())
+    state = run(io, 5)[-2][1]
+    assert state.damping and state.gate == io.trouble == "no command yet"
+    run(io, 5, hold)
+    assert io.trouble == ""
 
 
 def test_a_malformed_command_damps_that_cycle():

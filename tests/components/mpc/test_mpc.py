@@ -120,4 +120,13 @@ def test_a_failing_solver_is_named_and_the_next_tick_recovers():
     loop.mpc._iterate.h[:] = np.nan
     policy = loop.tick(0.01, STAND)
     assert not policy.valid and "riccati" in policy.solver
-    assert loop.tick(0.02, STAND).valid
+    assert loop.mpc.trouble == policy.solver
+    assert loop.tick(0.02, STAND).valid and loop.mpc.trouble == ""
+
+
+def test_an_old_estimate_is_its_trouble_and_another_mode_is_none():
+    loop = Loop()
+    loop.tick(1.0, STAND, estimate(0.0))
+    assert loop.mpc.trouble == "state/estimate is missing or stale"
+    loop.tick(1.0, replace(STAND, mode=ControlMode.DAMP))
+    assert loop.mpc.trouble == ""

@@ -33,13 +33,17 @@ ESTIMATE = StateEstimate(valid=True, p_WB=BASE, quat_WB=np.array([1.0, 0, 0, 0])
 
 
 def plan(first, request=REQUEST, estimate=ESTIMATE, **settings):
+    return plan_and_trouble(first, request, estimate, **settings)[0]
+
+
+def plan_and_trouble(first, request=REQUEST, estimate=ESTIMATE, **settings):
     component, got = Trajopt(Deployment(trajopt=Settings(**settings))), []
     inbox = Inbox(component.inputs)
     inbox.deliver("trajopt/request", replace(request, leg_order=np.roll(CRAWL, -first)))
     if estimate is not None:
         inbox.deliver("state/estimate", estimate)
     component.step(0.0, inbox, Outbox(component.outputs, lambda key, message: got.append(check(message))))
-    return got[0]
+    return got[0], component.trouble
 
 
 @pytest.mark.parametrize("first", range(4))
@@ -88,8 +92,15 @@ def test_blind_the_footholds_are_the_targets_and_the_base_arrives():
 
 
 def test_without_an_estimate_the_plan_says_so():
-    result = plan(0, estimate=None)
+    result, trouble = plan_and_trouble(0, estimate=None)
     assert not result.valid and "is the estimator running" in result.status
+    assert trouble == result.status
+
+
+def test_a_plan_that_fails_is_its_trouble():
+    result, trouble = plan_and_trouble(0, replace(REQUEST, base_target=np.full(6, np.nan)))
+    assert not result.valid and trouble == result.status != ""
+    assert plan_and_trouble(0)[1] == ""
 
 
 def test_the_envelope_takes_whole_vectors_at_the_extrema():

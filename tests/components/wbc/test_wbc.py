@@ -1,0 +1,62 @@
+"""One step of the whole-body controller: what fails is said, and what cannot be reached is not asked for."""
+
+import numpy as np
+
+from surefoot.bus.messages import ControlMode, MotionReference, Policy, StateEstimate
+from surefoot.components.component import Inbox, Outbox
+from surefoot.components.robot_model import LegKinematics
+from surefoot.components.wbc.wbc import Wbc
+from surefoot.components.wbc.whole_body_qp import QpFailed
+from surefoot.config.deployment import Deployment
+from surefoot.config.robot import GRAVITY, load_robot
+
+ROBOT = load_robot("aliengo")
+LEGS = LegKinematics(ROBOT)
+Q = np.tile(ROBOT.nominal.stand_q, 4)
+POSE = np.array([0.0, 0.0, 0.4, 0.0, 0.0, 0.0])
+FEET = POSE[:3] + LEGS.position(Q.reshape(4, 3))
+UP = np.array([0.0, 0.0, 1.0])
+
+
+class Step:
+    """Steps of a controller whose robot stands still, with a policy that lets it stand."""
+
+    def __init__(self):
+        self.wbc = Wbc(Deployment())
+        self.wbc.warm_up()
+        self.inbox, self.got = Inbox(self.wbc.inputs), []
+        self.outbox = Outbox(self.wbc.outputs, lambda key, message: self.got.append(message))
+
+    def __call__(self, t=0.0, q=Q, policy=True, **reference):
+        feet = POSE[:3] + LEGS.position(q.reshape(4, 3))
+        still = {"t": t, "valid": True, "normal_W": UP}
+        estimate = StateEstimate(p_WB=POSE[:3], quat_WB=np.array([1.0, 0.0, 0.0, 0.0]), q=q, p_WF=feet, **still)
+        self.inbox.deliver("state/estimate", estimate)
+        asked = {"mode": ControlMode.BALANCE, "base_from": POSE, "base_to": POSE, "p_WF": feet, **reference}
+        self.inbox.deliver("fsm/reference", MotionReference(**still, **asked))
+        if policy:
+            x, u = np.zeros((3, 24)), np.zeros((2, 24))
+            x[:, 6:12] = POSE
+            u[:, 2:12:3] = 0.25 * ROBOT.mass * GRAVITY
+            self.inbox.deliver("mpc/policy", Policy(t=t, valid=True, dt=0.015, x=x, u=u, v=np.zeros((3, 18))))
+        self.wbc.step(t, self.inbox, self.outbox)
+        return self.got[-1]
+
+
+def test_what_kept_it_from_its_work_is_its_trouble(monkeypatch):
+    step = Step()
+    assert step().solver == "ok" and step.wbc.trouble == ""
+
+    def fail(task):
+        raise QpFailed("whole-body QP: it is not feasible")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(step.wbc._qp, "solve", fail)
+        assert step(0.004).solver == step.wbc.trouble == "whole-body QP: it is not feasible"
+    assert step(0.008).solver == "ok" and step.wbc.trouble == ""
+    step(0.2, policy=False)
+    assert step(0.3, policy=False).solver == step.wbc.trouble == "no fresh policy: base held for 0.1 s"
+    step(0.31, mode=ControlMode.DAMP)
+    assert step.wbc.trouble == ""
+    step.wbc.step(1.0, step.inbox, step.outbox)
+    assert step.wbc.trouble == "state/estimate is missing or stale"
