@@ -61,7 +61,7 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
             with Live(console=console, screen=True, auto_refresh=False) as live:
 
                 def draw(picture: Picture) -> None:
-                    live.update(screen(picture, state, title), refresh=True)
+                    live.update(screen(picture, state, deployment.fsm.alternatives, title), refresh=True)
 
                 reason = supervisor.run(until, _Seldom(0.2, draw))
         else:

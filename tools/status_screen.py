@@ -9,8 +9,10 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from surefoot.bus.messages import ProcessStatus
+from surefoot.bus.message import specs
+from surefoot.bus.messages import Plan, ProcessStatus
 from surefoot.bus.topics import TOPICS
+from surefoot.components.fsm.course import AROUND_POINTS
 from surefoot.config.robot import LEGS
 from surefoot.tools.picture import Picture
 from surefoot.tools.verdict import Verdict
@@ -21,11 +23,19 @@ TOLD = ("contact", "collapse", "late_collapse", "accepted", "rejected", "stopped
 _SILENT_S = 3.0
 _RATE_BAND = 0.2  # a rate is well within so much of nominal
 _EVENTS, _REASONS = 5, 4
+_FORCES = specs(Plan)["envelope_W"].shape[0]
 
 
-def screen(picture: Picture, verdict: Verdict, title: str) -> Group:
-    """A rich renderable of what the supervisor has heard; fits 80 columns and 30 lines."""
-    parts = [_machine(picture, title), process_table(picture), health(picture), _events(picture)]
+def screen(picture: Picture, verdict: Verdict, alternatives: int, title: str) -> Group:
+    """A rich renderable of what the supervisor has heard; fits 80 columns and 30 lines.
+
+    Args:
+        picture: what has been heard.
+        verdict: how the run stands.
+        alternatives: to a planned foothold, in this deployment.
+        title: of the screen.
+    """
+    parts = [_machine(picture, alternatives, title), process_table(picture), health(picture), _events(picture)]
     if verdict.reason:
         parts.append(Text(f"{verdict.reason}. {verdict.advice}", style="bold red"))
     return Group(*parts)
@@ -37,7 +47,7 @@ def event_line(event) -> str:
     return f"{event.t:8.2f} s  {leg}  {event.kind}: {event.reason}"
 
 
-def _machine(picture: Picture, title: str) -> Panel:
+def _machine(picture: Picture, alternatives: int, title: str) -> Panel:
     reference, estimate = picture.reference, picture.estimate
     if reference is None or estimate is None:
         said = [w.status.reason for w in picture.processes.values() if w.status is not None and w.status.reason]
@@ -45,15 +55,16 @@ def _machine(picture: Picture, title: str) -> Panel:
     leg, counts = reference.leg, picture.counts
     lines = [f"[bold]{reference.state}[/bold]  {reference.reason}"]
     if leg >= 0:
-        candidate = "planned foothold" if reference.candidate == 0 else f"alternative {reference.candidate} of 3"
-        around = f", point {reference.around} of 4 around it" if 1 <= reference.around <= 4 else ""
+        number, point = reference.candidate, reference.around
+        candidate = f"alternative {number} of {alternatives}" if number else "planned foothold"
+        around = f", point {point} of {AROUND_POINTS} around it" if 1 <= point <= AROUND_POINTS else ""
         lines.append(f"leg [bold]{LEGS[leg]}[/bold], {candidate}{around}")
         held = estimate.force_W[leg] @ estimate.normal_W
         asked = "  -"
         if 0 <= reference.force_index < len(reference.probe_force_W) - 1:
             force = reference.probe_force_W[reference.force_index + 1] @ reference.normal_W
             asked = f"{force:3.0f}"
-            lines[-1] += f", force {reference.force_index + 1} of 6"
+            lines[-1] += f", force {reference.force_index + 1} of {_FORCES}"
         margin = "-" if picture.margin_m is None else f"{1e3 * picture.margin_m:.0f} mm"
         lines.append(f"force asked {asked} N, measured {held:3.0f} N;  support margin {margin}")
     else:

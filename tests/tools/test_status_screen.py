@@ -50,7 +50,7 @@ def full_picture():
 
 def shown(picture, width=100):
     out = io.StringIO()
-    Console(file=out, width=width, height=40).print(screen(picture, Verdict("it stopped", advice="go on"), "T"))
+    Console(file=out, width=width, height=40).print(screen(picture, Verdict("it stopped", advice="go on"), 5, "T"))
     return out.getvalue()
 
 
@@ -59,7 +59,7 @@ def test_everything_is_on_one_screen(width):
     text = shown(full_picture(), width)
     assert len(text.splitlines()) <= 30
     for words in (
-        "PROBE", "why not", "FR", "alternative 2 of 3", "point 3 of 4", "asked  80 N, measured  83 N",
+        "PROBE", "why not", "FR", "alternative 2 of 5", "point 3 of 4", "asked  80 N, measured  83 N",
         "force 3 of 6", "support margin", "12.5 s", "real-time factor", "footholds accepted 40",
         "displacement 4", "99/50", "late for tea", "restarted, 1 of 3", "it stopped. go on", "it held",
     ):  # fmt: skip
