@@ -182,13 +182,17 @@ class Wbc(Component):
         """Task acceleration of the swing foot, and its joint references by inverse kinematics."""
         leg, settings = reference.swing_leg, self._settings
         p, v, a = (item[0] for item in SwingSpline(reference).sample(np.array([t])))
+        p_BF = (estimate.p_WF - estimate.p_WB) @ R
+        p_BF[leg] = (p - estimate.p_WB) @ R
+        q, reachable = self._legs.inverse(p_BF)
+        if not reachable[leg]:
+            # The QP would drag the base after the foot: it is to rest where the leg ends, in the same direction.
+            p_BF[leg] = self._legs.position(q)[leg]
+            p, v, a = estimate.p_WB + R @ p_BF[leg], np.zeros(3), np.zeros(3)
         error, speed = p - estimate.p_WF[leg], v - estimate.v_WF[leg]
         acceleration = a + settings.swing_kp * error + settings.swing_kd * speed
         length = float(np.sqrt(acceleration @ acceleration))
         acceleration = acceleration * min(1.0, settings.swing_acceleration_max / max(length, 1e-9))
-        p_BF = (estimate.p_WF - estimate.p_WB) @ R
-        p_BF[leg] = (p - estimate.p_WB) @ R
-        q, _ = self._legs.inverse(p_BF)
         J = self._legs.jacobian(q)[leg]
         carried = estimate.v_WB_W + R @ np.cross(estimate.omega_WB_B, p_BF[leg])
         dq = np.linalg.solve(J @ J.T + 1e-4 * np.eye(3), (v - carried) @ R)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from surefoot.bus.messages import ControlMode, MotionReference, Policy, StateEstimate
+from surefoot.bus.messages import ControlMode, LegStatus, MotionReference, Policy, StateEstimate
 from surefoot.components.component import Inbox, Outbox
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.wbc.wbc import Wbc
@@ -60,3 +60,23 @@ def test_what_kept_it_from_its_work_is_its_trouble(monkeypatch):
     assert step.wbc.trouble == ""
     step.wbc.step(1.0, step.inbox, step.outbox)
     assert step.wbc.trouble == "state/estimate is missing or stale"
+
+
+def test_a_swing_target_out_of_reach_asks_for_no_more_than_the_leg_has():
+    q = Q.copy()
+    q[5] = LEGS.upper[1, 2]  # the front right leg is as long as it gets
+    foot = POSE[:3] + LEGS.position(q.reshape(4, 3))[1]
+    thigh = POSE[:3] + LEGS.hip_B[1] + [0.0, LEGS.thigh_y[1], 0.0]
+    status = np.zeros(4, int)
+    status[1] = LegStatus.SWING
+
+    def command(beyond_m):
+        return Step()(
+            t=1.0, q=q, leg_status=status, swing_leg=1, swing_t1=0.5, swing_lands=False,
+            swing_from=foot, swing_to=foot + beyond_m * (foot - thigh) / np.linalg.norm(foot - thigh),
+        )  # fmt: skip
+
+    there, within, beyond = command(0.0), command(-0.02), command(0.3)
+    for name in ("q", "dq", "tau", "force_W"):
+        np.testing.assert_allclose(getattr(beyond, name), getattr(there, name), atol=1e-4, err_msg=name)
+    assert np.abs(within.tau - there.tau).max() > 0.5
