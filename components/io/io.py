@@ -66,7 +66,10 @@ class Io(Component):
         return True
 
     def _advance(self, t: float, law: MotorLaw) -> None:
-        """One cycle; on the monotonic clock those that were missed too: a simulated plant does not wait."""
+        """One cycle; on the monotonic clock those that were missed too: a simulated plant does not wait.
+
+        The gate has judged the command's age at the last of them: in none is it older.
+        """
         if self._began is None:
             self._began = t
         due = round((t - self._began) * CYCLE_HZ) + 1

@@ -3,6 +3,7 @@
 from typing import get_args, get_type_hints
 
 import numpy as np
+import pytest
 
 from surefoot.bus.messages import JointCommand
 from surefoot.components.component import Inbox, Outbox
@@ -66,3 +67,18 @@ def test_when_it_ends_the_robot_is_damped_and_closed():
     assert io.deactivate(0.1, Inbox(io.inputs), Outbox(io.outputs, lambda key, message: None))
     (last,) = closed
     assert not last.kp.any() and not last.tau.any() and (last.kd == Deployment().hw.damping_kd).all()
+
+
+def test_the_cycles_missed_in_a_stall_are_made_up_and_none_with_a_command_too_old():
+    io = Io(Deployment())
+    written = []
+    write = io.robot.write
+    io.robot.write = lambda law: (written.append(law), write(law))
+    inbox, outbox = Inbox(io.inputs), Outbox(io.outputs, lambda key, message: None)
+    inbox.deliver("joint/command", hold(0.0))
+    io.step(0.0, inbox, outbox)
+    io.step(0.040, inbox, outbox)
+    assert len(written) == 21 and all(law.kp.any() for law in written)
+    io.step(0.400, inbox, outbox)
+    assert io.robot.t == pytest.approx(0.402) and "400.0 ms old" in io.trouble
+    assert len(written) == 201 and not any(law.kp.any() for law in written[21:])
