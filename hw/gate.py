@@ -66,9 +66,14 @@ class Gate:
         q = np.clip(command.q, self._lower, self._upper)
         dq = np.clip(command.dq, -self._velocity_limit, self._velocity_limit)
         tau = np.clip(command.tau, -self._torque_limit, self._torque_limit)
-        for name, given, allowed in (("q", command.q, q), ("dq", command.dq, dq), ("tau", command.tau, tau)):
-            if (given != allowed).any():
-                joint = int(np.argmax(np.abs(given - allowed)))
+        for name, given, allowed, acts in (
+            ("q", command.q, q, command.kp > 0.0),
+            ("dq", command.dq, dq, command.kd > 0.0),
+            ("tau", command.tau, tau, True),
+        ):
+            changed = np.abs(given - allowed) * acts
+            if changed.any():
+                joint = int(np.argmax(changed))
                 self.reason = (
                     f"command.{name} of {JOINT_NAMES[joint]} = {given[joint]:.2f} limited to {allowed[joint]:.2f}"
                 )

@@ -65,6 +65,11 @@ def test_torques_and_angles_beyond_the_limits_are_limited_and_named(gate):
     assert not gate.damping
 
 
+def test_an_angle_without_a_gain_is_not_worth_a_word(gate):
+    gate.law(dataclasses.replace(GOOD, q=np.zeros(12), kp=np.zeros(12)), 1.0)
+    assert not gate.damping and gate.reason == ""
+
+
 def test_it_recovers_with_the_next_good_command(gate):
     gate.law(None, 0.0)
     gate.law(GOOD, 1.0)
