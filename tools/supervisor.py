@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from surefoot.bus.codec import decode
@@ -94,12 +95,13 @@ class Supervisor:
             self.stop()
 
     def stop(self) -> None:
-        """End every process in order, by force those that do not."""
-        for name in _STOP_ORDER:
-            self._end(self.picture.processes[name])
-        if self._session is not None:
-            self._session.close()
-            self._session = None
+        """End every process in order, by force those that do not; a second Ctrl-C does not break it off."""
+        with _deaf():
+            for name in _STOP_ORDER:
+                self._end(self.picture.processes[name])
+            if self._session is not None:
+                self._session.close()
+                self._session = None
 
     def restart(self, name: str) -> None:
         """Restart one process; what was done, or why not, is noted in the picture."""
@@ -259,3 +261,14 @@ class Supervisor:
     def _on_command(self, key: str, payload: bytes) -> None:
         with suppress(MessageError):
             self.picture.note_command(decode(OperatorCommand, payload).command)
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Signals that end a run are ignored."""
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

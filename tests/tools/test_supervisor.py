@@ -1,8 +1,12 @@
-"""Which process may be restarted when: on the real robot never one that holds it up."""
+"""Which process may be restarted when, and that a stop is carried through."""
+
+import os
+import signal
 
 import pytest
 
 from surefoot.bus.messages import MotionReference
+from surefoot.bus.topics import PROCESSES
 from surefoot.config.deployment import Deployment, Run
 from surefoot.tools.supervisor import Supervisor
 
@@ -49,3 +53,18 @@ def test_in_simulation_everything_but_io_is_and_the_state_machine_stands_the_rob
     assert restart("fsm", "PROBE", "simulated")[0] == ["stand", "fsm"]
     done, said = restart("io", "DAMP")
     assert done == [] and "holds the robot and the bus" in said
+
+
+def test_a_stop_is_carried_through_whoever_presses_ctrl_c_again(tmp_path, monkeypatch):
+    supervisor, ended = Supervisor(tmp_path / "flat.toml", [], Deployment()), []
+
+    def end(watched):
+        os.kill(os.getpid(), signal.SIGINT)
+        os.kill(os.getpid(), signal.SIGTERM)
+        ended.append(watched.name)
+
+    monkeypatch.setattr(supervisor, "_end", end)
+    before = signal.getsignal(signal.SIGINT)
+    supervisor.stop()
+    assert sorted(ended) == sorted(PROCESSES) and ended[-1] == "io"
+    assert signal.getsignal(signal.SIGINT) == before
