@@ -31,14 +31,15 @@ class Probe:
     """The six forces of an envelope, one dwell each.
 
     Attributes:
-        envelope_W: (6, 3) by rising normal force [N].
+        envelope_W: (6, 3) what the stride needs of the foothold, by rising normal force [N].
+        asked_W: (6, 3) what the foot is asked to press with: the envelope, as far as statics allow [N].
         told: how many forces are over.
         held_n: the largest normal force held so far [N].
     """
 
     def __init__(self, settings: Fsm):
         self._settings = settings
-        self.envelope_W = np.zeros((0, 3))
+        self.envelope_W = self.asked_W = np.zeros((0, 3))
         self.told = 0
         self.held_n = 0.0
         self._t0 = 0.0
@@ -47,16 +48,21 @@ class Probe:
     @property
     def over(self) -> bool:
         """Every force has had its dwell."""
-        return self.told == len(self.envelope_W)
+        return self.told == len(self.asked_W)
 
     @property
     def duration_s(self) -> float:
         """All dwells together."""
-        return len(self.envelope_W) * self._settings.dwell_s
+        return len(self.asked_W) * self._settings.dwell_s
 
     def short(self, normal_W: np.ndarray) -> bool:
-        """The largest force held is too small a share of the envelope's peak."""
-        return self.held_n < self._settings.held_share * float((self.envelope_W @ normal_W).max(initial=0.0))
+        """The largest force held is too small a share of the largest asked."""
+        return self.held_n < self._settings.held_share * float((self.asked_W @ normal_W).max(initial=0.0))
+
+    def limit(self, most_n: float, normal_W: np.ndarray) -> None:
+        """Ask for the envelope, each force scaled down to a normal component of at most `most_n` [N]."""
+        share = np.minimum(1.0, most_n / np.maximum(self.envelope_W @ normal_W, 1e-9))
+        self.asked_W = share[:, None] * self.envelope_W
 
     def begin(self, t0: float) -> None:
         """The first force is asked from t0 on."""
@@ -64,7 +70,7 @@ class Probe:
 
     def asked_n(self, index: int, normal_W: np.ndarray) -> float:
         """Normal component of a force [N]."""
-        return float(self.envelope_W[index] @ normal_W)
+        return float(self.asked_W[index] @ normal_W)
 
     def update(self, t: float, force_n: float, normal_W: np.ndarray) -> list[Held]:
         """Take in the estimated normal force; the forces whose dwell ended since the last call."""

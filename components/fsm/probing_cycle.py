@@ -17,8 +17,9 @@ from surefoot.components.fsm.probe import Held, Probe
 from surefoot.components.fsm.questions import Questions
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
+from surefoot.components.fsm.static_limit import static_limit
 from surefoot.config.fsm import Fsm
-from surefoot.config.robot import LEGS, Robot
+from surefoot.config.robot import GRAVITY, LEGS, Robot
 
 _STAND_S = 1.0
 """Time to bring the base over the middle of the feet."""
@@ -40,6 +41,7 @@ class ProbingCycle:
         """`report(kind, reason, **figures)` is called for every event."""
         self._settings = settings
         self._planner = FootholdPlanner(robot, settings)
+        self._weight_n = robot.mass * GRAVITY
         self._course = Course(self._planner, settings)
         self._report = report
         self._watch = StanceWatch()
@@ -151,7 +153,7 @@ class ProbingCycle:
             leg=self._leg,
             candidate=self._candidate,
             around=self._around,
-            force_index=min(press.told, len(press.envelope_W) - 1) if self.state == State.PROBE else -1,
+            force_index=min(press.told, len(press.asked_W) - 1) if self.state == State.PROBE else -1,
             finished=self.finished,
         )
 
@@ -332,7 +334,11 @@ class ProbingCycle:
         start: a foot that leaves the ground under full load throws the base over.
         """
         settings, press, normal = self._settings, self._press, self.reference.normal_W
-        forces = [max(now.normal_force(self._leg), 5.0) * normal, *press.envelope_W]
+        limit = static_limit(
+            self.reference.p_WF, self._leg, settings.margin_m + settings.margin_extra_m, self._weight_n
+        )
+        press.limit(settings.force_over_static * limit, normal)
+        forces = [max(now.normal_force(self._leg), 5.0) * normal, *press.asked_W]
         begin = now.t + settings.settle_s
         if settings.probe_around:
             forces.append(settings.unload_n * normal)
@@ -344,8 +350,9 @@ class ProbingCycle:
         press.begin(begin)
         where = f"around point {self._around}" if self._around else "foothold"
         where += ", again: the force fell short" if self._repeated else ""
-        peak = press.asked_n(len(press.envelope_W) - 1, normal)
-        self._enter(State.PROBE, now, f"{where}, up to {peak:.0f} N")
+        peak, needed = (float((forces_W @ normal).max()) for forces_W in (press.asked_W, press.envelope_W))
+        short = f" of {needed:.0f}, statics allow no more" if peak < needed - 0.5 else ""
+        self._enter(State.PROBE, now, f"{where}, up to {peak:.0f} N{short}")
 
     def _probe(self, now: Observation) -> None:
         settings, leg, press = self._settings, self._leg, self._press
@@ -405,7 +412,7 @@ class ProbingCycle:
 
     def _collapsed(self, now: Observation, moved: float) -> None:
         press = self._press
-        index = min(press.told, len(press.envelope_W) - 1)
+        index = min(press.told, len(press.asked_W) - 1)
         why = f"the foot moved {1e2 * moved:.1f} cm, limit {1e2 * self._settings.collapse_m:.1f} cm"
         asked = press.asked_n(index, self.reference.normal_W)
         foot = now.estimate.p_WF[self._leg]

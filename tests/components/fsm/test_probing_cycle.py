@@ -174,6 +174,19 @@ def test_a_force_that_falls_short_is_asked_once_more_then_certified_as_far_as_it
     assert figures["held_n"] == pytest.approx(60.0, abs=1.0) and "60 of 100 N" in reason
 
 
+def test_no_more_is_asked_than_the_stance_can_press_with():
+    puppet = Puppet(forward=False)
+    puppet.feet[FR, 1] += 0.14  # close to the diagonal that RL presses against
+    puppet.cycle.stand_up(puppet.observe())
+    puppet.run(1.2)
+    puppet.cycle.walk(puppet.observe(), np.array([1.0, 0.0]), "forward")
+    assert puppet.run(8.0, lambda: bool(puppet.kinds("accepted")))
+    first = next(event for event in puppet.kinds("transition") if event[3] == "PROBE")
+    assert "of 100, statics allow no more" in first[1]
+    figures = puppet.kinds("accepted")[0][2]
+    assert figures["leg"] == RL and 10.0 < figures["held_n"] < 80.0
+
+
 @pytest.mark.parametrize(("question", "topic"), [("regions", "foothold/regions"), ("plan", "trajopt/plan")])
 def test_an_unanswered_question_is_asked_again(question, topic):
     puppet = Puppet()

@@ -3,6 +3,7 @@
 import pytest
 
 from surefoot.config.deployment import load_deployment
+from surefoot.config.typed_toml import ConfigError
 from surefoot.tools.evaluation.arms import ARMS, arm_overrides
 
 
@@ -26,13 +27,13 @@ def test_every_arm_changes_what_its_name_says(fsm):
 
 @pytest.mark.parametrize("arm", ["blindfold", "", "full=3", "threshold", "threshold=", "=3"])
 def test_an_unknown_arm_is_answered_with_those_there_are(arm):
-    with pytest.raises(ValueError) as told:
+    with pytest.raises(ConfigError) as told:
         arm_overrides(arm)
     for known in (*ARMS, "fixed_force=FIGURE", "threshold=FIGURE"):
         assert known in str(told.value)
     assert repr(arm) in str(told.value)
 
 
-def test_a_figure_that_is_none_is_named():
-    with pytest.raises(ValueError, match="thick"):
-        arm_overrides("threshold=thick")
+def test_a_figure_that_is_none_is_named(fsm):
+    with pytest.raises(ConfigError, match=r"fsm\.collapse_m = 'thick'"):
+        fsm("threshold=thick")
