@@ -68,8 +68,8 @@ class Deployment:
         """The gate damps in every cycle in which a gain is above its limit."""
         for name in ("joint_kp", "posture_kp"):
             ordered(self, f"wbc.{name}", "hw.kp_max", "every command would be refused")
-        for name in ("joint_kd", "posture_kd", "damping_kd"):
-            ordered(self, f"wbc.{name}", "hw.kd_max", "every command would be refused")
+        for name in ("wbc.joint_kd", "wbc.posture_kd", "hw.damping_kd"):
+            ordered(self, name, "hw.kd_max", "every command would be refused")
 
     def _check_plans(self, robot: Robot) -> None:
         """Plans are in explicit Euler steps, and motors have to follow them."""

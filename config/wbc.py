@@ -39,7 +39,6 @@ class Wbc:
     joint_kd: Annotated[float, Within(0.0, 100.0)] = 1.0  # of all legs, on the robot [N m s/rad]
     posture_kp: Annotated[float, Within(1.0, 2000.0)] = 250.0  # JOINT mode [N m/rad]
     posture_kd: Annotated[float, Within(0.0, 100.0)] = 6.0  # JOINT mode [N m s/rad]
-    damping_kd: Annotated[float, Within(0.1, 100.0)] = 3.0  # DAMP mode [N m s/rad]
     friction_speed: FrictionSpeed = 0.2  # joint speed over which compensated Coulomb friction turns round [rad/s]
     hold_s: Pause = 1.0  # without a policy the base is held this long, then lowered ...
     lower_speed: Annotated[float, Within(0.005, 1.0)] = 0.1  # ... at this speed [m/s] ...

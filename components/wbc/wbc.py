@@ -78,7 +78,7 @@ class Wbc(Component):
         return True
 
     def _damp(self, t: float, why: str) -> JointCommand:
-        return JointCommand(t=t, valid=True, kd=np.full(12, self._settings.damping_kd), solver=why or "ok")
+        return JointCommand(t=t, valid=True, kd=np.full(12, self.deployment.hw.damping_kd), solver=why or "ok")
 
     def _posture(self, t: float, reference: MotionReference) -> JointCommand:
         """JOINT mode: from one posture to another, at rest at both ends."""

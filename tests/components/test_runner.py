@@ -122,4 +122,4 @@ def test_the_last_command_of_the_whole_body_controller_brakes(process):
     wbc.run()
     last = decode(JointCommand, next(payload for key, payload in wbc._session.sent if key == "joint/command"))
     assert last.valid and not last.kp.any() and not last.tau.any()
-    np.testing.assert_array_equal(last.kd, Deployment().wbc.damping_kd)
+    np.testing.assert_array_equal(last.kd, Deployment().hw.damping_kd)
