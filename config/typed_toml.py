@@ -68,7 +68,10 @@ def build(cls: type, table: Any, path: str = "") -> Any:
     values = {}
     for name, field in fields.items():
         if name in table:
-            values[name] = _convert(hints[name], table[name], _join(path, name))
+            given = table[name]
+            if dataclasses.is_dataclass(field.default) and isinstance(given, dict):
+                given = to_table(field.default) | given  # what a part of a section leaves out stays as it is
+            values[name] = _convert(hints[name], given, _join(path, name))
         elif field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
             raise ConfigError(f"{_join(path, name)}: missing; {where} must give it")
     try:

@@ -24,6 +24,13 @@ def test_sections_override_defaults(tmp_path):
     assert (result.hw.seed, result.hw.torque_noise, result.terrain.kind) == (3, 0.0, "planks")
 
 
+def test_a_part_of_a_section_leaves_the_rest_as_it_is(tmp_path):
+    result = deployment(tmp_path, "", ["ocp.friction_cone.mu=5.0"]).ocp
+    assert (result.friction_cone.mu, result.friction_cone.delta) == (5.0, 0.1)
+    with pytest.raises(ConfigError, match=r"ocp\.friction_cone\.delta = 0"):
+        deployment(tmp_path, "", ["ocp.friction_cone.delta=0"])
+
+
 @pytest.mark.parametrize(
     ("text", "named"),
     [
