@@ -1,4 +1,4 @@
-"""Imports run one way: bus <- hw <- components <- tools; config imports none of them."""
+"""Imports run one way: bus <- hw <- components <- tools; config imports none of them. Components are pure."""
 
 import ast
 from pathlib import Path
@@ -41,3 +41,21 @@ def test_no_controller_reads_the_simulators_truth(path):
     parts = path.relative_to(ROOT).parts
     if parts[0] == "components" and len(parts) > 2 and parts[1] != "io":
         assert "sim/truth" not in path.read_text()
+
+
+PURE = [path for path in SOURCES if path.parent.parent == ROOT / "components"]
+IMPURE = {"time", "datetime", "random", "secrets", "os", "pathlib", "socket", "threading", "subprocess"}
+
+
+@pytest.mark.parametrize("path", PURE, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_component_has_no_clock_no_file_and_no_chance(path):
+    """What a component publishes follows from its inbox; a stopwatch for its own status is allowed."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            assert not IMPURE & {alias.name.split(".")[0] for alias in node.names}, ast.unparse(node)
+        elif isinstance(node, ast.ImportFrom) and node.module.split(".")[0] in IMPURE:
+            assert {alias.name for alias in node.names} == {"perf_counter"}, ast.unparse(node)
+        elif isinstance(node, ast.Attribute):
+            assert node.attr != "random", ast.unparse(node)
+        elif isinstance(node, ast.Name):
+            assert node.id not in ("open", "print", "input"), ast.unparse(node)
