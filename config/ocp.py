@@ -9,7 +9,6 @@ from surefoot.config.quantities import ConeRounding, Friction, InputWeight, Leas
 from surefoot.config.typed_toml import Within, ordered
 
 Vector3 = tuple[Weight, Weight, Weight]
-Balance = Annotated[float, Within(0.0, 1.0)]
 Step = Annotated[float, Within(1.0, 1e4)]
 
 
@@ -49,7 +48,6 @@ class Ocp:
     joint_velocity: Barrier = Barrier(0.1, 0.1)  # [rad/s]
     force_limits: Barrier = Barrier(1.0, 0.5)  # [N]
     support_polygon: Barrier = Barrier(100.0, 0.02)  # [m]
-    balance_s: Balance = 0.0  # eq. (5) on the CoM; > 0: on the CoM extrapolated by its velocity over this [s]
     probing_force: Barrier = Barrier(0.7, 0.7)  # [N]
     friction: Friction = 0.5  # mu_c of eq. (3)
     cone_regularisation_n2: ConeRounding = 4.0  # rounds the cone's tip; asks f_n of at least its root over mu_c

@@ -28,8 +28,8 @@ class FootPlacement:
         A = nodes.reference.region_a
         slope, bend = self._barrier.derivatives(h)
         active = active[..., None]
-        model.foot_slope += (A.swapaxes(1, 2) @ (active * slope)[..., None])[..., 0]
-        model.foot_bend += A.swapaxes(1, 2) @ ((active * bend)[..., None] * A)
+        model.place_slope[:, :4] += (A.swapaxes(1, 2) @ (active * slope)[..., None])[..., 0]
+        model.place_bend[:, :4] += A.swapaxes(1, 2) @ ((active * bend)[..., None] * A)
 
     def violation(self, nodes: Nodes) -> float:
         if not nodes.reference.region_active.any():

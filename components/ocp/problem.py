@@ -44,7 +44,7 @@ def compose(settings: Ocp, robot: Robot) -> tuple[Tracking, tuple[Term, ...]]:
         FootPlacement(barrier("foot_placement")),
         JointPositionLimits(barrier("joint_position"), legs.lower, legs.upper),
         JointVelocityLimits(barrier("joint_velocity"), settings.joint_velocity_limit),
-        SupportPolygon(barrier("support_polygon"), settings.balance_s),
+        SupportPolygon(barrier("support_polygon")),
         ProbingForce(barrier("probing_force")),
     )
 
@@ -93,7 +93,7 @@ class Problem:
         self.dynamics = CentroidalDynamics(robot, N)
         self.tracking, self.constraints = compose(settings, robot)
         self._qp = StageQP(N, NX, NU, self.dynamics.F)
-        self._model = QuadraticModel(self._qp, settings.balance_s)
+        self._model = QuadraticModel(self._qp)
         self._riccati = Riccati(self._qp)
 
     def cold_start(self, reference: NodeReference) -> Trajectory:

@@ -5,19 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from surefoot.components.ocp.centroidal_dynamics import Linearisation
-from surefoot.components.ocp.layout import (
-    CONFIGURATION,
-    NU,
-    NV,
-    NX,
-    ONE,
-    POSITION,
-    WIDTH,
-    U,
-    X,
-    diagonals,
-    leg_blocks,
-)
+from surefoot.components.ocp.layout import CONFIGURATION, NU, NV, NX, ONE, WIDTH, U, X, diagonals, leg_blocks
 from surefoot.components.ocp.riccati import StageQP
 
 
@@ -31,24 +19,18 @@ class QuadraticModel:
         x_slope, x_bend: (N+1, 24) of single states, the terminal node's too.
         u_slope: (N, 4, 3), u_bend: (N, 4, 3, 3) of the inputs of each leg.
         dq_slope, dq_bend: (N, 12) of single joint velocities.
-        foot_slope: (N, 4, 3), foot_bend: (N, 4, 3, 3) of the places of the feet.
-        balance_slope: (N, 2), balance_bend: (N, 2, 2) of the balance point, the centre of mass in the plane
-            extrapolated by its velocity over `balance_s`.
+        place_slope: (N, 5, 3), place_bend: (N, 5, 3, 3) of the places of the four feet and the centre of mass.
     """
 
-    def __init__(self, qp: StageQP, balance_s: float = 0.0):
+    def __init__(self, qp: StageQP):
         N = qp.N
         self.x_slope, self.x_bend = np.zeros((N + 1, NX)), np.zeros((N + 1, NX))
         self.u_slope, self.u_bend = np.zeros((N, 4, 3)), np.zeros((N, 4, 3, 3))
         self.dq_slope, self.dq_bend = np.zeros((N, NU)), np.zeros((N, NU))
-        self.foot_slope, self.foot_bend = np.zeros((N, 4, 3)), np.zeros((N, 4, 3, 3))
-        self.balance_slope, self.balance_bend = np.zeros((N, 2)), np.zeros((N, 2, 2))
-        self._dq_rows, self._foot_rows = np.empty((N, NU, WIDTH)), np.empty((N, 4, 3, NV + 1))
-        self._balance_x, self._balance_rows = np.zeros((N, 2, NX)), np.empty((N, 2, NX + 1))
-        self._balance_x[:, [0, 1], [0, 1]] = balance_s
+        self.place_slope, self.place_bend = np.zeros((N, 5, 3)), np.zeros((N, 5, 3, 3))
+        self._dq_rows, self._place_rows = np.empty((N, NU, WIDTH)), np.empty((N, 5, 3, NV + 1))
         M = self._M = qp.M
-        self._foot_costs = M[:, CONFIGURATION, CONFIGURATION.start :]
-        self._balance_costs = M[:, X, X.start :]
+        self._place_costs = M[:, CONFIGURATION, CONFIGURATION.start :]
         self._u_blocks, self._u_gradient = leg_blocks(M[:, U, U]), M[:, U, ONE].reshape(N, 4, 3)
         self._x_diagonal, self._x_gradient = diagonals(M[:, X, X]), M[:, X, ONE]
         self._end_diagonal, self._end_gradient = diagonals(qp.Q_end[None])[0], qp.q_end
@@ -57,8 +39,7 @@ class QuadraticModel:
         """Forget what terms have added."""
         for array in (
             self.x_slope, self.x_bend, self.u_slope, self.u_bend,
-            self.dq_slope, self.dq_bend, self.foot_slope, self.foot_bend,
-            self.balance_slope, self.balance_bend,
+            self.dq_slope, self.dq_bend, self.place_slope, self.place_bend,
         ):  # fmt: skip
             array.fill(0.0)
 
@@ -71,17 +52,10 @@ class QuadraticModel:
         rows[..., ONE] = self.dq_slope
         np.matmul(G.swapaxes(1, 2), rows, out=self._M)
 
-        J, rows = linear.place_x[:, :4], self._foot_rows
-        np.matmul(self.foot_bend, J, out=rows[..., :NV])
-        rows[..., NV] = self.foot_slope
-        self._foot_costs += J.reshape(N, 12, NV).swapaxes(1, 2) @ rows.reshape(N, 12, NV + 1)
-
-        if self.balance_bend.any():
-            J, rows = self._balance_x, self._balance_rows
-            J[:, :, POSITION.start :] = linear.com_x[:, :2]
-            np.matmul(self.balance_bend, J, out=rows[..., :NX])
-            rows[..., NX] = self.balance_slope
-            self._balance_costs += J.swapaxes(1, 2) @ rows
+        J, rows = linear.place_x, self._place_rows
+        np.matmul(self.place_bend, J, out=rows[..., :NV])
+        rows[..., NV] = self.place_slope
+        self._place_costs += J.reshape(N, 15, NV).swapaxes(1, 2) @ rows.reshape(N, 15, NV + 1)
 
         self._u_blocks += self.u_bend
         self._u_gradient += self.u_slope

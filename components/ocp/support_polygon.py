@@ -1,4 +1,4 @@
-"""Eq. (5): the robot stays balanced on the legs that do not probe."""
+"""Eq. (5): the centre of mass stays inside the polygon of the legs that do not probe."""
 
 from __future__ import annotations
 
@@ -15,20 +15,16 @@ _NEXT = np.roll(_CORNERS, -1, axis=1)
 
 
 class SupportPolygon:
-    """A_s r_b + b_s - alpha >= 0 [m]; Table I: mu 100, delta 0.02 m.
+    """A_s r_b + b_s - alpha >= 0 [m], r_b the centre of mass along gravity; Table I: mu 100, delta 0.02 m.
 
     The polygon is that of the three other feet as the reference places them, its normals of unit length, so
     that the barrier is in metres. The feet stand (v = 0 by eq. (3)): only the centre of mass moves in it.
-
-    In the paper r_b is the centre of mass along gravity, and accelerations of the base are left out. Here it is
-    extrapolated by its velocity, r_b = c + balance_s v_c. With balance_s = sqrt(z/g), 0.2 s, that is the capture
-    point: when the ground gives way the robot can still be stopped on the other three feet. 0 is the paper's.
     """
 
     name = "support_polygon"
 
-    def __init__(self, barrier: RelaxedBarrier, balance_s: float = 0.0):
-        self._barrier, self._balance_s = barrier, balance_s
+    def __init__(self, barrier: RelaxedBarrier):
+        self._barrier = barrier
 
     def value(self, nodes: Nodes) -> np.ndarray:
         active, h, _ = self._margins(nodes)
@@ -40,8 +36,8 @@ class SupportPolygon:
         active, h, normals = self._margins(nodes)
         slope, bend = self._barrier.derivatives(h)
         inward = (active[:, None, None] * normals).swapaxes(1, 2)
-        model.balance_slope += (inward @ slope[..., None])[..., 0]
-        model.balance_bend += inward @ (bend[..., None] * normals)
+        model.place_slope[:, 4, :2] += (inward @ slope[..., None])[..., 0]
+        model.place_bend[:, 4, :2, :2] += inward @ (bend[..., None] * normals)
 
     def violation(self, nodes: Nodes) -> float:
         if not (nodes.reference.support_leg >= 0).any():
@@ -60,6 +56,5 @@ class SupportPolygon:
         edges = feet.take(first + _NEXT.take(out, axis=0), axis=0) - corners
         x, y = edges[..., 0], edges[..., 1]
         normals = np.stack((-y, x), axis=-1) / np.sqrt(x * x + y * y)[..., None]
-        point = nodes.linear.com_W[:, :2] + self._balance_s * nodes.iterate.h[:N, :2]
-        offset = normals * (point[:, None] - corners[..., :2])
+        offset = normals * (nodes.linear.com_W[:, None, :2] - corners[..., :2])
         return active, offset[..., 0] + offset[..., 1] - reference.support_margin_m, normals

@@ -59,8 +59,8 @@ class Tracking:
         model.u_bend += share[..., None, None] * _EYE3
         model.dq_slope += self._R_dq * nodes.iterate.v[:, 6:]
         model.dq_bend += self._R_dq
-        model.foot_slope += weights.foot_position * foot
-        model.foot_bend += weights.foot_position * _EYE3
+        model.place_slope[:, :4] += weights.foot_position * foot
+        model.place_bend[:, :4] += weights.foot_position * _EYE3
 
     def violation(self, nodes: Nodes) -> float:
         return 0.0

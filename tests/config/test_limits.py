@@ -228,7 +228,7 @@ def test_values_that_do_not_go_together_are_named(assignments, said):
     [
         "fsm.alternatives=0 fsm.goal_m=0 fsm.step_min_m=0",
         "fsm.fixed_force_n=150 fsm.collapse_m=0.01",
-        "ocp.support_polygon.mu=100.0 ocp.support_polygon.delta=0.02 ocp.balance_s=0.0",
+        "ocp.support_polygon.mu=10.0 ocp.support_polygon.delta=0.005",
         "ocp.weights.terminal_scale=0 ocp.weights.force=1e-3",
         "ocp.friction=0.8 wbc.friction=0.5",
         "trajopt.intervals=40 trajopt.interval_s=0.1",

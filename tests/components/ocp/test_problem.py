@@ -79,7 +79,7 @@ def moved(nodes, node, delta):
 @pytest.mark.parametrize("term", (PROBLEM.tracking, *PROBLEM.constraints), ids=lambda term: term.name)
 def test_gradients_are_those_of_the_value(term):
     qp = StageQP(N, 24, 12)
-    model = QuadraticModel(qp, Ocp().balance_s)
+    model = QuadraticModel(qp)
     term.add(NODES, model)
     model.write(NODES.linear)
     H, g = qp.H, qp.g
