@@ -57,6 +57,7 @@ class ProbingCycle:
         self._candidate = 0
         self._around = 0
         self._repeated = False
+        self._borne_n = 0.0  # largest force this candidate has held
         self._candidates_W = np.zeros((0, 3))
         self._targets_W = np.zeros((4, 3))
         self._foothold_W = np.zeros(3)
@@ -313,6 +314,8 @@ class ProbingCycle:
         self._event("contact", f"{now.normal_force(leg):.0f} N, {off:+.1f} cm along the walk", now, foot)
         self._watch.touched(leg, foot)
         self._repeated = False
+        if not self._around:
+            self._borne_n = 0.0
         if self.state == State.RETURN_SAFE:
             self.motion.touch_down(now, LegStatus.COLLAPSING if self._watch.sunk[leg] else LegStatus.STANCE)
             self._returned(now, self.reason)
@@ -374,7 +377,7 @@ class ProbingCycle:
 
     def _force_held(self, now: Observation, held: Held, moved: float) -> None:
         if not self._around:
-            self.certified_n[self._leg] = max(held.held_n, self.certified_n[self._leg] if held.index else 0.0)
+            self._borne_n = max(held.held_n, self._borne_n)
         short = "" if held.enough else ", short of the asked force"
         self._event(
             "force_held",
@@ -402,9 +405,11 @@ class ProbingCycle:
         self.motion.trust(leg)
         self._course.settle(leg)
         self.motion.plant(now)
-        peak = float((self._press.envelope_W @ self.reference.normal_W).max(initial=0.0))
-        if self._settings.probing and self.certified_n[leg] < self._settings.held_share * peak:
-            reason = f"certified for {self.certified_n[leg]:.0f} of {peak:.0f} N only"
+        if self._settings.probing:
+            self.certified_n[leg] = self._borne_n
+            peak = float((self._press.envelope_W @ self.reference.normal_W).max())
+            if self._borne_n < self._settings.held_share * peak:
+                reason = f"{reason}; certified for {self._borne_n:.0f} of {peak:.0f} N only"
         self._event("accepted", reason, now, foot, held_n=float(self.certified_n[leg]))
         self._enter(State.PRE_OPT, now, f"{LEGS[leg]} stands safely")
 
@@ -521,10 +526,12 @@ class ProbingCycle:
                 self._return_safe(now, why)
         elif self.state == State.STOPPED:
             self.stand(now, why)
+        elif self.state == State.PROBE and self._borne_n > 0.0:
+            # To lift this foot too would leave two; to probe it again would load the others once more.
+            self._accept(now, f"it bore what it was asked until {LEGS[leg]} gave way")
         elif self.state != State.RETURN_SAFE:
             if self.state == State.PROBE:
-                # Too few feet to lift this one now: it stays, and is probed again when its turn comes.
-                self._course.put_first(self._leg)
+                self._course.put_first(self._leg)  # it stays down for now and is probed when its turn comes
             self.motion.plant(now)
             self._enter(State.PRE_OPT, now, why)
 

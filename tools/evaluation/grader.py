@@ -76,6 +76,7 @@ class Grader:
         # Until a foot has been probed: the run-up has to bear what a standing foot puts on it.
         self._borne_n = robot.mass * GRAVITY / 4
         self._certified_n = [self._borne_n] * 4
+        self._carried_n = np.zeros(4)  # largest force on each foot since it was accepted
         self._low_since: dict[int, float] = {}
         self._lifting: tuple[int, float] | None = None
         self._held: list[tuple[float, ...]] = []
@@ -162,6 +163,7 @@ class Grader:
                 self.failure = self.failure or "stuck"
 
     def _watch_accepted(self, truth: SimTruth) -> None:
+        self._carried_n = np.maximum(self._carried_n, truth.force_W[:, 2])
         status = self._reference.leg_status if self._reference is not None else np.zeros(4, int)
         for leg, where in self._accepted_W.items():
             if leg in self._sunk or status[leg] not in (LegStatus.STANCE, LegStatus.COLLAPSING):
@@ -241,7 +243,7 @@ class Grader:
             counts["footholds"] += 1
             self._accepted_W[leg] = truth.p_WF[leg].copy()
             self._sunk.discard(leg)
-            self._certified_n[leg] = self._borne_n
+            self._certified_n[leg], self._carried_n[leg] = self._borne_n, 0.0
 
     def _largest_asked(self) -> float:
         """Largest normal force of the envelope; the entry before it is what was there when the foot touched."""
@@ -277,10 +279,11 @@ class Grader:
         """A collapse of a trusted foot is false where it has not sunk and the press test says the ground holds.
 
         The press is at the place where the foot truly stands when it is given up, not where it was accepted: it
-        may have slipped off. It presses with the force for which the foothold was certified, the peak of its
-        probe's envelope: what the ground was trusted with, and about the most that a stance foot gets.
+        may have slipped off. It presses with the largest force that the foot has borne there, or was certified
+        for: the peak of its probe's envelope.
         """
-        if leg not in self._sunk and not self._verdict(*truth.p_WF[leg, :2], self._certified_n[leg]):
+        pressed_n = max(self._certified_n[leg], self._carried_n[leg])
+        if leg not in self._sunk and not self._verdict(*truth.p_WF[leg, :2], pressed_n):
             self.counts["false_alarms"] += 1
             self.counts["late_false_alarms"] += 1
 

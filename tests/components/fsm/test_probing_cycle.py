@@ -80,12 +80,38 @@ def test_a_stance_foot_that_sinks_while_another_swings_is_the_next_to_be_moved()
 def test_a_foot_under_test_stays_down_when_another_sinks_and_is_tested_again():
     puppet = Puppet()
     puppet.reach("PROBE")
-    puppet.run(0.3)
+    puppet.run(0.15)  # the first force has not had its time
     puppet.sunk[FR] = 0.035
     puppet.tick()
     assert puppet.status[RL] == PROBING and puppet.status[FR] == COLLAPSING
     assert puppet.run(15.0, lambda: len(puppet.kinds("accepted")) == 2)
     assert [event[2]["leg"] for event in puppet.kinds("accepted")] == [FR, RL]
+
+
+def test_a_foot_that_has_borne_some_when_another_sinks_is_certified_for_that():
+    puppet = Puppet()
+    puppet.reach("PROBE")
+    puppet.run(0.35)  # 60 and 68 N
+    puppet.sunk[FR] = 0.035
+    puppet.tick()
+    assert puppet.status[RL] == STANCE and puppet.status[FR] == COLLAPSING
+    _kind, reason, figures, _state = puppet.kinds("accepted")[0]
+    assert figures["leg"] == RL and figures["held_n"] == pytest.approx(68.0, abs=1.0)
+    assert "until FR gave way" in reason and "68 of 100 N" in reason
+    assert puppet.run(8.0, lambda: len(puppet.kinds("accepted")) == 2)
+    assert puppet.kinds("accepted")[1][2]["leg"] == FR
+
+
+def test_a_foothold_that_failed_does_not_change_what_the_old_one_is_certified_for():
+    puppet = Puppet(Fsm(probe_around=False, alternatives=0))
+    assert puppet.run(20.0, lambda: len(puppet.kinds("accepted")) == 5)
+    before = puppet.cycle.certified_n.copy()
+    puppet.reach("PROBE")
+    leg = int(puppet.cycle.reference.probe_leg)
+    puppet.run(0.35)
+    puppet.sunk[leg] = 0.035
+    puppet.reach("STOPPED")
+    assert (puppet.cycle.certified_n == before).all() and before[leg] > 90.0
 
 
 def test_drift_of_the_estimate_is_no_collapse_even_with_two_trusted_feet():

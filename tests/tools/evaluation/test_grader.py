@@ -360,6 +360,20 @@ def test_a_late_collapse_is_judged_by_what_its_own_foothold_was_certified_for():
         assert told.counts["false_alarms"] == 1
 
 
+def test_a_late_collapse_under_more_than_was_certified_is_judged_by_what_the_foot_bore():
+    for carried, false in ((45.0, 1), (120.0, 0)):
+        told = Told(ON_PLANKS)
+        told.probe(1, GOOD, envelope=(20.0, 20.0, 25.0, 30.0, 35.0, 40.0))
+        told.event("transition", 1, state="PROBE_AROUND")
+        told.accept(1)
+        force_W = np.zeros((4, 3))
+        force_W[1, 2] = carried
+        told.foot(1, WEAK, force_W=force_W)
+        told.foot(1, WEAK, force_W=np.zeros((4, 3)))  # it has fallen off already when it is noticed
+        told.event("late_collapse", 1)
+        assert told.counts["false_alarms"] == false
+
+
 def test_a_foot_that_was_never_probed_is_judged_by_its_share_of_the_weight():
     told = Told(ON_PLANKS)
     told.truth()
