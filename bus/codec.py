@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import Any, TypeVar
 
 import msgpack
 import numpy as np
@@ -17,12 +18,20 @@ _TYPE = "message"
 _LITTLE = {"float64": "<f8", "int64": "<i8", "bool": "?"}
 
 
-@cache
-def _plan(cls: type[Message]) -> tuple[tuple[str, FieldSpec, np.dtype | None], ...]:
+M = TypeVar("M", bound=Message)
+
+_Plan = tuple[tuple[str, FieldSpec, np.dtype | None], ...]
+
+
+def _make_plan(cls: type[Message]) -> _Plan:
     return tuple(
         (name, spec, np.dtype(_LITTLE[spec.dtype]) if spec.kind == "array" else None)
         for name, spec in specs(cls).items()
     )
+
+
+# `cache` takes what is Hashable: mypy grants that to a `type`, but not to a `type[Message]`.
+_plan: Callable[[type], _Plan] = cache(_make_plan)
 
 
 def encode(message: Message, volatile: bool = True) -> bytes:
@@ -62,7 +71,7 @@ def encode(message: Message, volatile: bool = True) -> bytes:
     return msgpack.packb(fields)
 
 
-def decode(cls: type[Message], data: bytes) -> Message:
+def decode(cls: type[M], data: bytes) -> M:
     """The message in `data`; arrays are read-only views of it. Fields this version does not know are ignored.
 
     Raises:
@@ -84,7 +93,7 @@ def decode(cls: type[Message], data: bytes) -> Message:
     return cls(**values)
 
 
-def check(message: Message) -> Message:
+def check(message: M) -> M:
     """The same message, if every number in it is finite and every shape as declared.
 
     Raises:
@@ -99,7 +108,14 @@ def check(message: Message) -> Message:
     return message
 
 
-_PYTHON = {"number": (float, int), "integer": (int,), "flag": (bool,), "text": (str,), "names": (list,)}
+_PYTHON: dict[str, tuple[Any, ...]] = {
+    "number": (float, int),
+    "integer": (int,),
+    "flag": (bool,),
+    "text": (str,),
+    "names": (list,),
+}
+"""What msgpack gives of each kind, as `isinstance` takes it; `Any`: mypy cannot know which kind is at hand."""
 
 
 def _decode_field(cls: type, name: str, spec: FieldSpec, dtype: np.dtype | None, value: Any) -> Any:

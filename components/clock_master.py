@@ -14,7 +14,7 @@ from surefoot.components.component import Life
 from surefoot.components.operator_desk import OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
-from surefoot.components.scheduler import NS, Scheduler
+from surefoot.components.scheduler import NS, Executor, Scheduler
 from surefoot.components.stepper import Stepper
 from surefoot.config.deployment import Deployment
 
@@ -41,7 +41,7 @@ class ClockMaster:
         table = processes(deployment.mpc.profile)
         self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)
         self._remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
-        executors = {"io": _HostedExecutor(self._stepper), **self._remote}
+        executors: dict[str, Executor] = {"io": _HostedExecutor(self._stepper), **self._remote}
         self.scheduler = Scheduler(executors, table)
 
     def run(self) -> int:
@@ -118,9 +118,12 @@ class RemoteExecutor:
     def release(self, t_ns: int, visible: dict[str, int]) -> None:
         with self._lock:
             self._pending = (t_ns, dict(visible))
-            self._send()
+            self._send(*self._pending)
 
     def collect(self) -> dict[str, int]:
+        if self._pending is None:
+            raise RuntimeError(f"{self._name} was collected before it was released")
+        t_ns, visible = self._pending
         begun = time.monotonic()
         said = False
         while True:
@@ -133,10 +136,10 @@ class RemoteExecutor:
                     self._master.waiting(f"simulated time waits for {self._name}, {waited:.1f} s now")
                 self._master.look()
                 continue
-            if done.t_ns == self._pending[0]:
+            if done.t_ns == t_ns:
                 break
         with self._lock:
-            self._resume = clock.Resume(self._pending[1], done.snapshot)
+            self._resume = clock.Resume(visible, done.snapshot)
             self._pending = None
         if said:
             self._master.waiting("")
@@ -147,11 +150,10 @@ class RemoteExecutor:
         with self._lock:
             self._new_there = True
             if self._pending is not None:
-                self._send()
+                self._send(*self._pending)
         self._ready.set()
 
-    def _send(self) -> None:
-        t_ns, visible = self._pending
+    def _send(self, t_ns: int, visible: dict[str, int]) -> None:
         payload = clock.pack_release(t_ns, visible, self._resume if self._new_there else None)
         self._new_there = False
         self._master.session.put(f"{clock.RELEASE}/{self._name}", payload)

@@ -10,7 +10,7 @@ process table. The same scheduler drives components in this process and, over th
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from surefoot.bus.topics import PROCESSES, Process
@@ -43,7 +43,7 @@ class Scheduler:
         visible: for each topic, how many messages have become visible so far.
     """
 
-    def __init__(self, executors: dict[str, Executor], table: dict[str, Process] = PROCESSES):
+    def __init__(self, executors: Mapping[str, Executor], table: Mapping[str, Process] = PROCESSES):
         """`table` says when each process is released; of it, those that have an executor take part."""
         self._executors = executors
         self._processes = {name: process for name, process in table.items() if name in executors}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from functools import partial
 
 from surefoot.bus.codec import check, encode
 from surefoot.bus.message import Message
@@ -54,7 +55,7 @@ class Stepper:
         """Begin to listen to the inputs, and keep the last outputs for readers that come late."""
         self.buffers.connect(self._session)
         for key, kept in self._kept.items():
-            self._session.serve(f"{clock.KEPT}/{key}", lambda kept=kept: list(kept))
+            self._session.serve(f"{clock.KEPT}/{key}", partial(list, kept))
 
     def resume(self, resume: clock.Resume, visible: dict[str, int]) -> None:
         """Take the place of a process that is gone, where its last finished step left it."""

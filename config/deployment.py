@@ -102,11 +102,11 @@ class Deployment:
                     f"{name}.force_max_n = {section.force_max_n}: must be above {third:.0f} N, "
                     f"a third of {robot.name}'s weight"
                 )
-        for name, section in (("ocp", self.ocp), ("trajopt", self.trajopt)):
-            asked = sqrt(section.cone_regularisation_n2) / self.ocp.friction
+        for name, planner in (("ocp", self.ocp), ("trajopt", self.trajopt)):
+            asked = sqrt(planner.cone_regularisation_n2) / self.ocp.friction
             if asked >= quarter:
                 raise ConfigError(
-                    f"{name}.cone_regularisation_n2 = {section.cone_regularisation_n2} with ocp.friction = "
+                    f"{name}.cone_regularisation_n2 = {planner.cone_regularisation_n2} with ocp.friction = "
                     f"{self.ocp.friction} asks {asked:.0f} N of every foot: must be below {quarter:.0f} N, "
                     f"a quarter of {robot.name}'s weight"
                 )

@@ -144,7 +144,7 @@ def _convert(hint: Any, value: Any, path: str) -> Any:
         return {key: _convert(args[1], item, _join(path, key)) for key, item in value.items()}
     if origin is tuple:
         return _convert_tuple(args, value, path)
-    if dataclasses.is_dataclass(hint):
+    if isinstance(hint, type) and dataclasses.is_dataclass(hint):
         return build(hint, value, path)
     if hint is float and isinstance(value, int) and not isinstance(value, bool):
         return float(value)

@@ -54,9 +54,9 @@ class Gate:
         for name, limit in (("kp", self._settings.kp_max), ("kd", self._settings.kd_max)):
             gains = getattr(command, name)
             if gains.min() < 0.0 or gains.max() > limit:
-                joint = int(np.argmax(np.maximum(-gains, gains - limit)))
+                worst = int(np.argmax(np.maximum(-gains, gains - limit)))
                 self.reason = (
-                    f"command.{name} of {JOINT_NAMES[joint]} = {gains[joint]:.1f}, allowed 0 to {limit:.0f}"
+                    f"command.{name} of {JOINT_NAMES[worst]} = {gains[worst]:.1f}, allowed 0 to {limit:.0f}"
                 )
                 return self._damp
         self.damping = False

@@ -12,6 +12,7 @@ from time import perf_counter
 import numpy as np
 
 from surefoot.bus.message import Message
+from surefoot.bus.messages import MotionReference, PlanRequest, Policy, StateEstimate
 from surefoot.components.component import Inbox, Outbox
 from surefoot.components.lockstep import Lockstep
 from surefoot.components.trajopt.trajopt import Trajopt
@@ -83,15 +84,15 @@ class _Witness:
         self._last_estimate: Message | None = None
 
     def __call__(self, key: str, message: Message) -> None:
-        if key == "mpc/policy" and message.valid:
+        if isinstance(message, Policy) and message.valid:
             for stage, ms in zip(message.stage, message.stage_ms.tolist(), strict=True):
                 self.stages.setdefault(stage, []).append(ms)
-        elif key == "fsm/reference":
+        elif isinstance(message, MotionReference):
             self.swinging += message.swing_leg >= 0
             self.probing += message.probe_leg >= 0
-        elif key == "state/estimate":
+        elif isinstance(message, StateEstimate):
             self._last_estimate = message
-        elif key == "trajopt/request":
+        elif isinstance(message, PlanRequest):
             self.request, self.estimate = message, self._last_estimate
 
 

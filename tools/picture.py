@@ -31,6 +31,11 @@ class Watched:
     status: ProcessStatus | None = None
     heard: float = 0.0  # monotonic clock of the last status [s]
 
+    @property
+    def exit_code(self) -> int | None:
+        """How it ended; None while it runs, or before it was started."""
+        return self.popen.poll() if self.popen is not None else None
+
 
 @dataclass
 class Picture:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from rich.console import Group
+from rich.console import Group, JustifyMethod, RenderableType
 from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
@@ -35,7 +35,12 @@ def screen(picture: Picture, verdict: Verdict, alternatives: int, title: str) ->
         alternatives: to a planned foothold, in this deployment.
         title: of the screen.
     """
-    parts = [_machine(picture, alternatives, title), process_table(picture), health(picture), _events(picture)]
+    parts: list[RenderableType] = [
+        _machine(picture, alternatives, title),
+        process_table(picture),
+        health(picture),
+        _events(picture),
+    ]
     if verdict.reason:
         parts.append(Text(f"{verdict.reason}. {verdict.advice}", style="bold red"))
     return Group(*parts)
@@ -95,7 +100,7 @@ def process_table(picture: Picture) -> Table:
         "bad": 3,
     }
     for column, width in (widths | {"restarts": 8}).items():
-        justify = "left" if column in ("process", "state", "oldest input") else "right"
+        justify: JustifyMethod = "left" if column in ("process", "state", "oldest input") else "right"
         table.add_column(column, justify=justify, no_wrap=True, overflow="ellipsis", min_width=width)
     for name, watched in picture.processes.items():
         status = watched.status

@@ -74,7 +74,7 @@ class Supervisor:
         try:
             self._start("io")
             self._session = self._connect()
-            self._listen()
+            self._listen(self._session)
             self._await("io")
             if self._simulated:
                 self._command(self._deployment.run.command)
@@ -176,9 +176,10 @@ class Supervisor:
             elif verb == "stop":
                 return "stopped by command"
         for watched in self.picture.processes.values():
-            if watched.popen is None or watched.popen.poll() is None:
+            code = watched.exit_code
+            if code is None:
                 continue
-            what = self._obituary(watched)
+            what = self._obituary(watched.name, code)
             watched.crashes += 1
             if watched.name == "io" or not self._simulated:
                 return what
@@ -188,14 +189,13 @@ class Supervisor:
             self.note(f"{what}; restarted, {watched.crashes} of {MAX_CRASHES}")
         return ""
 
-    def _obituary(self, watched: Watched) -> str:
+    def _obituary(self, name: str, code: int) -> str:
         """How a process ended, in words."""
-        code = watched.popen.returncode
         how = f"signal {-code}" if code < 0 else f"exit code {code}"
-        log = self._log_of(watched.name)
+        log = self._log_of(name)
         lines = log.read_text(errors="replace").strip().splitlines() if log.exists() else []
         last = f" ({lines[-1][:160]})" if lines and code > 0 else ""
-        return f"{watched.name} ended with {how}{last}, see {log}"
+        return f"{name} ended with {how}{last}, see {log}"
 
     def _log_of(self, name: str) -> Path:
         return self._log_dir / f"{name}.log"
@@ -209,8 +209,9 @@ class Supervisor:
             try:
                 return Session(self._deployment.run.namespace, connect_ms=1000)
             except BusError:
-                if io.popen.poll() is not None:
-                    raise BusError(self._obituary(io)) from None
+                code = io.exit_code
+                if code is not None:
+                    raise BusError(self._obituary(io.name, code)) from None
                 if time.monotonic() > end:
                     raise BusError(
                         f"io did not open the bus in {_HUB_S:.0f} s, see {self._log_of('io')}"
@@ -219,11 +220,10 @@ class Supervisor:
     def _await(self, name: str) -> None:
         """Until a process has spoken: what is published before its subscriptions stand is lost."""
         watched = self.picture.processes[name]
-        while watched.status is None and watched.popen.poll() is None:
+        while watched.status is None and watched.exit_code is None:
             time.sleep(_LOOK_S)
 
-    def _listen(self) -> None:
-        session = self._session
+    def _listen(self, session: Session) -> None:
         self._newest = {key: session.newest(key) for key in ("state/estimate", "fsm/reference")}
         session.subscribe("status/*", self._on_status)
         session.subscribe("fsm/event", self._on_event)
@@ -232,8 +232,11 @@ class Supervisor:
 
     def _command(self, command: str) -> None:
         """A command, given for the operator."""
-        if command:
-            self._session.put(clock.REQUEST, command.encode())
+        if not command:
+            return
+        if self._session is None:
+            raise BusError(f"cannot give the command {command!r}: the bus is open only while `run` goes on")
+        self._session.put(clock.REQUEST, command.encode())
 
     def _hear(self) -> None:
         # The readers that act on a malformed message count and report it; here the last good one stays.

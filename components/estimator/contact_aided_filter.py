@@ -145,7 +145,7 @@ class ContactAidedFilter:
             self.P += self.P.T.copy()
             self.P *= 0.5
             self._inject(K @ residual.ravel()[rows])
-        for leg in np.flatnonzero(stance & ~used):
+        for leg in np.flatnonzero(stance & ~used).tolist():
             self.known[leg] = False
             self._forget(leg, self.R_WB @ p_BF[leg])
         return used

@@ -234,7 +234,7 @@ class ProbingCycle:
     def _begin_move(self, now: Observation) -> None:
         """The base goes inside the triangle of the other three; the swing waits for it."""
         settings = self._settings
-        distance = np.linalg.norm(self._support_pose[:3] - now.estimate.p_WB)
+        distance = float(np.linalg.norm(self._support_pose[:3] - now.estimate.p_WB))
         duration = distance / settings.shift_speed
         if not self.motion.in_air:
             duration = max(settings.shift_s, duration)

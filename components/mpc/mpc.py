@@ -128,8 +128,8 @@ class Mpc(Component):
 
     def _warm_start(self, nodes: NodeReference, t: float) -> Trajectory:
         """The last trajectory at the new nodes; where a leg's contact has changed, the reference's input."""
-        old = self._iterate
-        if old is None:
+        old, old_contact = self._iterate, self._contact
+        if old is None or old_contact is None:
             return self._problem.cold_start(nodes)
         N = self._problem.N
         position = np.minimum(np.arange(N + 1) + max((t - self._t) / self._dt, 0.0), N)
@@ -144,7 +144,7 @@ class Mpc(Component):
 
         R_before = old.R_WB[low]
         turn = log_rotations(R_before.swapaxes(1, 2) @ old.R_WB[low + 1])
-        same = (self._contact[held] == nodes.contact[:N])[..., None]
+        same = (old_contact[held] == nodes.contact[:N])[..., None]
         contact = nodes.contact[:N, :, None]
         cold_velocity = np.where(contact, 0.0, nodes.v_WF[:N])
         return replace(

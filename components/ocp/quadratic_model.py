@@ -46,6 +46,7 @@ class QuadraticModel:
     def write(self, linear: Linearisation) -> None:
         """Write the costs of the QP: H = sum J' bend J, g = sum J' slope."""
         N = len(self.dq_bend)
+        rows: np.ndarray
         # Slopes stand in the last column of bend J, so that one product gives Hessian and gradient.
         G, rows = linear.V[:, 6:], self._dq_rows
         np.multiply(self.dq_bend[..., None], G, out=rows)

@@ -68,7 +68,8 @@ class Riccati:
         """
         qp, W = self._qp, self._W
         N, nu, last, dot = qp.N, qp.nu, qp.nu + qp.nx, np.dot
-        P, gains = qp.P_end.T, []
+        P = qp.P_end.T
+        gains: list[np.ndarray] = []
         # Of P and S only the lower triangles are read: rounding cannot break a symmetry that is not stored.
         # Arguments by position (side, lower, trans, ..., overwrite): by name they cost a tenth of a product.
         for Ft, S, S_uu, S_xu, S_xx in self._stages:

@@ -71,12 +71,18 @@ class BaseTarget:
             p_WB, R_WB: where the base is; held at the start, before there was any target.
             stance: (4,) feet on the ground.
         """
-        followed = self._last is not None and self._with_policy
-        if policy is None and (followed or self._held is None):
-            self._lost_t = t
-            self._held = self._last or Target(p_WB.copy(), R_WB.copy(), np.zeros(3), np.zeros(3), np.zeros((4, 3)))
-        source = self._of_policy(t, policy) if policy is not None else self._without(t, stance)
-        self.held_s = 0.0 if policy is not None else t - self._lost_t
+        if policy is not None:
+            source = self._of_policy(t, policy)
+            self.held_s = 0.0
+        else:
+            followed = self._last is not None and self._with_policy
+            if self._held is None or followed:
+                self._lost_t = t
+                self._held = self._last or Target(
+                    p_WB.copy(), R_WB.copy(), np.zeros(3), np.zeros(3), np.zeros((4, 3))
+                )
+            source = self._without(t, self._held, stance)
+            self.held_s = t - self._lost_t
         if self._last is not None and (policy is not None) != self._with_policy:
             self._fade_t, self._gap = t, _difference(self._last, source)
         self._with_policy = policy is not None
@@ -96,9 +102,9 @@ class BaseTarget:
         R = matrix_of_rpy(x[9:12])
         return Target(x[6:9], R, R @ policy.v[k, :3], R @ policy.v[k, 3:6], policy.u[k, :12].reshape(4, 3))
 
-    def _without(self, t: float, stance: np.ndarray) -> Target:
+    def _without(self, t: float, held: Target, stance: np.ndarray) -> Target:
         """Hold the last pose, then lower it; the feet share the weight."""
-        settings, held = self._settings, self._held
+        settings = self._settings
         sinking = min(max(t - self._lost_t - settings.hold_s, 0.0) * settings.lower_speed, settings.lower_m)
         down = np.array([0.0, 0.0, sinking])
         force = np.zeros((4, 3))

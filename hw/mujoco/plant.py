@@ -36,11 +36,12 @@ def draw_plant(robot: Robot, settings: Hw) -> Plant:
     trunk = robot.trunk
     scale = 1.0 + settings.trunk_mass_error * rng("trunk_mass").uniform(-1.0, 1.0)
     offset = settings.com_error_m * rng("com").uniform(-1.0, 1.0, 3)
+    ixx, ixy, ixz, iyy, iyz, izz = (scale * figure for figure in trunk.inertia)
     varied = replace(
         trunk,
         mass=trunk.mass * scale,
         com=tuple(np.array(trunk.com) + offset),
-        inertia=tuple(scale * figure for figure in trunk.inertia),
+        inertia=(ixx, ixy, ixz, iyy, iyz, izz),
     )
     return Plant(
         robot=replace(robot, trunk=varied),

@@ -99,21 +99,21 @@ class Grader:
 
     def __call__(self, key: str, message: Message) -> None:
         """Listen to every message of the run."""
-        if key == "sim/truth":
+        if isinstance(message, SimTruth):
             self._on_truth(message)
-        elif key == "state/estimate":
+        elif isinstance(message, StateEstimate):
             self._estimate = message
-        elif key == "fsm/reference":
+        elif isinstance(message, MotionReference):
             self._reference = message
             if message.state != "STOPPED":
                 self._moving_t = message.t
-        elif key == "mpc/policy" and message.valid:
+        elif isinstance(message, Policy) and message.valid:
             self._policy = message
             for name, value in zip(message.constraint, message.violation, strict=True):
                 self.violation[name] = max(self.violation.get(name, 0.0), float(value))
-        elif key == "joint/command":
+        elif isinstance(message, JointCommand):
             self._command = message
-        elif key == "fsm/event":
+        elif isinstance(message, FsmEvent):
             self._on_event(message)
 
     @property
@@ -263,7 +263,7 @@ class Grader:
         """A collapse is true where the press test says that the probed point fails the envelope's peak."""
         probe, self._probe = self._probe, None
         if probe is not None:
-            truly = self._verdict(*probe.point, probe.force_n)
+            truly = self._verdict(probe.point, probe.force_n)
             self.counts["true_positives" if truly else "false_alarms"] += 1
 
     def _end_probe(self) -> None:
@@ -273,7 +273,7 @@ class Grader:
         """
         probe, self._probe = self._probe, None
         if probe is not None and probe.borne:
-            self.counts["false_negatives"] += self._verdict(*probe.point, probe.force_n)
+            self.counts["false_negatives"] += self._verdict(probe.point, probe.force_n)
 
     def _label_late_collapse(self, leg: int, truth: SimTruth) -> None:
         """A collapse of a trusted foot is false where it has not sunk and the press test says the ground holds.
@@ -283,13 +283,14 @@ class Grader:
         for: the peak of its probe's envelope.
         """
         pressed_n = max(self._certified_n[leg], self._carried_n[leg])
-        if leg not in self._sunk and not self._verdict(*truth.p_WF[leg, :2], pressed_n):
+        if leg not in self._sunk and not self._verdict(truth.p_WF[leg, :2], pressed_n):
             self.counts["false_alarms"] += 1
             self.counts["late_false_alarms"] += 1
 
-    def _verdict(self, x: float, y: float, force_n: float) -> bool:
-        """The press test's, to the millimetre and the newton."""
-        return self._press(round(float(x), 3), round(float(y), 3), round(force_n)).collapsible
+    def _verdict(self, point: np.ndarray, force_n: float) -> bool:
+        """The press test's at a point (2,), to the millimetre and the newton."""
+        x, y = point.tolist()
+        return self._press(round(x, 3), round(y, 3), round(force_n)).collapsible
 
     # Results --------------------------------------------------------------------------------------------
 

@@ -6,9 +6,11 @@ import os
 import traceback
 from collections.abc import Callable
 from time import perf_counter
+from typing import cast
 
 import numpy as np
 
+from surefoot.components.io.io import Io
 from surefoot.components.lockstep import Lockstep
 from surefoot.config.deployment import Deployment
 from surefoot.tools.evaluation.grader import Grader
@@ -36,7 +38,8 @@ def grade(deployment: Deployment, limit_s: float = LIMIT_S, progress: Callable[[
 
 def _grade(deployment: Deployment, limit_s: float, progress: Callable[[str], None] | None) -> dict:
     stack = Lockstep(deployment)
-    grader = Grader(deployment, stack.components["io"].robot.field.end_x)
+    io = cast(Io, stack.components["io"])  # what the registry has under this name
+    grader = Grader(deployment, io.robot.field.end_x)
     stack.listen(grader)
     stack.command(deployment.run.command)
     begun, told = perf_counter(), 0.0

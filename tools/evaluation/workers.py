@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
-from multiprocessing.process import BaseProcess
+from multiprocessing.context import SpawnProcess
+from typing import cast
 
 Work = Callable[..., dict]
 """Makes one entry of `runs` in `results.json`; importable, since a fresh process has to find it."""
@@ -19,7 +20,8 @@ def run_apart(work: Work, calls: Sequence[tuple], jobs: int) -> Iterator[tuple[t
         so. Left early, the processes that still run are ended.
     """
     context = get_context("spawn")  # a fork would share the solvers' memory, and locks of the parent's threads
-    waiting, running = list(calls), {}
+    waiting = list(calls)
+    running: dict[Connection, tuple[tuple, SpawnProcess]] = {}
     try:
         while waiting or running:
             while waiting and len(running) < jobs:
@@ -29,7 +31,8 @@ def run_apart(work: Work, calls: Sequence[tuple], jobs: int) -> Iterator[tuple[t
                 process.start()
                 mouth.close()  # the process holds the only one: the ear hears its death
                 running[ear] = call, process
-            for ear in wait(list(running)):
+            # `wait` takes sockets too; what it returns are some of the ears it was given.
+            for ear in cast(list[Connection], wait(list(running))):
                 call, process = running.pop(ear)
                 yield call, _hear(ear, process)
     finally:
@@ -46,7 +49,7 @@ def _tell(mouth: Connection, work: Work, call: tuple) -> None:
     mouth.send(result)
 
 
-def _hear(ear: Connection, process: BaseProcess) -> dict:
+def _hear(ear: Connection, process: SpawnProcess) -> dict:
     with ear:
         try:
             result = ear.recv()
