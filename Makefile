@@ -22,7 +22,7 @@ bench: $(STAMP)
 	$(BIN)/surefoot bench
 
 lint: $(STAMP)
-	$(BIN)/ruff check . && $(BIN)/ruff format --check .
+	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Surefoot needs Python 3.11 or newer: set PYTHON=python3.11")'
@@ -31,5 +31,5 @@ $(STAMP): pyproject.toml
 	touch $@
 
 clean:
-	rm -rf $(VENV) build log .pytest_cache .ruff_cache *.egg-info .import/*.egg-info
+	rm -rf $(VENV) build log .pytest_cache .ruff_cache .mypy_cache *.egg-info .import/*.egg-info
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
