@@ -44,6 +44,10 @@ class Balance:
         """The base sets off: whatever rest there was is over."""
         self._at_rest.restart()
 
+    def inside(self, now: Observation, reference: MotionReference, leg: int) -> bool:
+        """The other three feet can carry the robot, at rest or not."""
+        return SupportTriangle(reference.p_WF, leg).margin(now.com_W[:2]) >= self._settings.margin_m
+
     def ready(self, now: Observation, reference: MotionReference, leg: int) -> bool:
         """The base has come to rest inside the triangle: the leg may lift off."""
         settings = self._settings

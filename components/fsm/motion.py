@@ -44,6 +44,11 @@ class Motion:
         return self._ground == LegStatus.STANCE
 
     @property
+    def sinking(self) -> np.ndarray:
+        """(4,) feet on ground that gives way."""
+        return self.reference.leg_status == LegStatus.COLLAPSING
+
+    @property
     def bearing(self) -> np.ndarray:
         """(4,) feet that stand on ground not known to give way."""
         return np.isin(self.reference.leg_status, (LegStatus.STANCE, LegStatus.PROBING))
@@ -199,6 +204,7 @@ class Motion:
             # The foot is falling with the ground: to stop it in one tick would throw the base over.
             swing_v_from=now.estimate.v_WF[leg].copy(),
             swing_lands=False,
+            **self._support(leg, now.t, now.t),
         )
 
     def _support(self, leg: int, start: float, t: float) -> dict:

@@ -56,7 +56,7 @@ class ProbingCycle:
         self._leg = -1
         self._candidate = 0
         self._around = 0
-        self._repeated = False
+        self._repeated = self._freed = False
         self._borne_n = 0.0  # largest force this candidate has held
         self._candidates_W = np.zeros((0, 3))
         self._targets_W = np.zeros((4, 3))
@@ -140,6 +140,7 @@ class ProbingCycle:
         if self._settings.probing:
             self._watch_stance(now)
             self._watch_balance(now)
+            self._free_sunk(now)
         self._steps[self.state](now)
 
     def message(self, t: float) -> MotionReference:
@@ -424,9 +425,13 @@ class ProbingCycle:
         self._event("collapse", why, now, foot, force_index=index, asked_n=asked, displacement_m=moved)
         self._begin_leg_up(now, why)
 
-    def _begin_leg_up(self, now: Observation, reason: str) -> None:
-        """The foot leaves the ground at once; the base stays inside the other three feet."""
+    def _begin_leg_up(self, now: Observation, reason: str, freed: bool = False) -> None:
+        """The foot leaves the ground at once; the base stays inside the other three feet.
+
+        After that comes the next candidate, or where a foot is `freed` the one that it was on its way to.
+        """
         leg, settings = self._leg, self._settings
+        self._freed = freed
         to = self._planner.below_hip(leg, now.pose, settings.leg_up_below_hip_m)
         # Straight up first: half the way to the place below the hip, so that the leg comes free of what it is in.
         to[:2] = 0.5 * (to[:2] + now.estimate.p_WF[leg, :2])
@@ -442,6 +447,8 @@ class ProbingCycle:
             return
         if self._no_way_back:
             self._rest(now, self._no_way_back)
+        elif self._freed:
+            self._ask(now, f"{LEGS[self._leg]} is free of the ground that gave way")
         else:
             self._next_candidate(now)
 
@@ -529,11 +536,37 @@ class ProbingCycle:
         elif self.state == State.PROBE and self._borne_n > 0.0:
             # To lift this foot too would leave two; to probe it again would load the others once more.
             self._accept(now, f"it bore what it was asked until {LEGS[leg]} gave way")
+            self._leave(leg, now)
         elif self.state != State.RETURN_SAFE:
             if self.state == State.PROBE:
                 self._course.put_first(self._leg)  # it stays down for now and is probed when its turn comes
             self.motion.plant(now)
             self._enter(State.PRE_OPT, now, why)
+            self._leave(leg, now)
+
+    def _leave(self, leg: int, now: Observation) -> None:
+        """The base sets off from a foot that sinks without waiting for a plan."""
+        feet, normal = now.estimate.p_WF, now.estimate.normal_W
+        pose = self._planner.support_pose(
+            leg, feet[leg], feet, normal, self._course.heading, now.com_B, np.zeros(3)
+        )
+        if pose is not None:
+            self.motion.shift_base(now, pose, self._settings.shift_s)
+
+    def _free_sunk(self, now: Observation) -> None:
+        """A foot on ground that gives way is lifted as soon as the others can carry, or when it carries nothing.
+
+        Who goes on counting on a foot that hangs in a hole loses the balance that the others could keep.
+        """
+        leg = self._leg
+        if (
+            self.state not in (State.SEND, State.OPT, State.MOVE)
+            or self.motion.in_air
+            or not self.motion.sinking[leg]
+        ):
+            return
+        if self._balance.inside(now, self.reference, leg) or not now.estimate.contact[leg]:
+            self._begin_leg_up(now, f"{LEGS[leg]} leaves the ground that gave way", freed=True)
 
     def _watch_balance(self, now: Observation) -> None:
         """A base that tilts or leaves the support triangle while a leg is moved ends the step."""

@@ -77,6 +77,20 @@ def test_a_stance_foot_that_sinks_while_another_swings_is_the_next_to_be_moved()
     assert len(puppet.kinds("late_collapse")) == 1
 
 
+def test_a_foot_that_sinks_is_lifted_as_soon_as_the_others_can_carry():
+    puppet = Puppet()
+    assert puppet.run(8.0, lambda: bool(puppet.kinds("accepted")))
+    puppet.reach("MOVE")
+    puppet.sunk[FR] = 0.05
+    assert puppet.run(2.0, lambda: puppet.cycle.state == "LEG_UP")
+    margin = SupportTriangle(puppet.feet, FR).margin(puppet.pose[:2])
+    assert puppet.settings.margin_m <= margin < puppet.settings.shift_margin_m
+    puppet.reach("SEND")
+    assert puppet.cycle.counters["candidate"] == 0 and puppet.status[FR] == SWING
+    assert puppet.run(8.0, lambda: len(puppet.kinds("accepted")) == 2)
+    assert puppet.kinds("accepted")[1][2]["leg"] == FR
+
+
 def test_a_foot_under_test_stays_down_when_another_sinks_and_is_tested_again():
     puppet = Puppet()
     puppet.reach("PROBE")
