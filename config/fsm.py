@@ -70,6 +70,7 @@ class Fsm:
     settle_s: Pause = 0.12  # from contact to the first force: the base leans towards the foot in this time
     unload_s: Pause = 0.08  # after the last force, before the foot hops on ...
     unload_n: Force = 12.0  # ... it is brought down to this
+    yield_m: Advance = 0.015  # a stance foot that moves this far while another presses ends the press
     collapse_m: Annotated[float, Within(0.001, 0.3)] = 0.03  # displacement that is a collapse (Sec. II-D.5)
     held_share: Share = 0.8  # a force counts as held above this share of what was asked
 

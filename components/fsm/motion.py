@@ -188,6 +188,12 @@ class Motion:
             probe_force_W=forces_W,
         )
 
+    def ease(self, leg: int, now: Observation, force_n: float) -> None:
+        """The foot that presses is brought down to a normal force, and stays."""
+        normal = self.reference.normal_W
+        self.reference = replace(self.reference, swing_leg=_NONE)
+        self.press(leg, now.t, np.array([now.normal_force(leg) * normal, force_n * normal]))
+
     def raise_leg(self, leg: int, now: Observation, to: np.ndarray) -> None:
         """LEG_UP: the foot leaves the ground at once and stays in the air at a point (3,)."""
         status = self._ground.copy()

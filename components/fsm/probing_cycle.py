@@ -57,6 +57,8 @@ class ProbingCycle:
         self._candidate = 0
         self._around = 0
         self._repeated = self._freed = False
+        self._eased = ""  # why the press is broken off
+        self._moved_before = np.zeros(4)
         self._borne_n = 0.0  # largest force this candidate has held
         self._candidates_W = np.zeros((0, 3))
         self._targets_W = np.zeros((4, 3))
@@ -350,6 +352,8 @@ class ProbingCycle:
                 self._foothold_W = now.estimate.p_WF[self._leg].copy()
             point = self._course.around(self._foothold_W, self._around + 1)
             self._plan_hop(begin + press.duration_s + settings.unload_s, point, now)
+        self._eased = ""
+        self._moved_before = self._watch.displacement(now.estimate.p_WF)
         self.motion.press(self._leg, begin, np.array(forces))
         press.begin(begin)
         where = f"around point {self._around}" if self._around else "foothold"
@@ -364,9 +368,14 @@ class ProbingCycle:
         if moved > settings.collapse_m:
             self._collapsed(now, moved)
             return
+        if self._eased:
+            if now.t >= self.reference.probe_t0 + settings.unload_s:
+                self._stay(now, self._eased)
+            return
         for held in press.update(now.t, now.normal_force(leg), self.reference.normal_W):
             self._force_held(now, held, moved)
-        if not press.over:
+        self._ease_for_others(now)
+        if self._eased or not press.over:
             return
         if press.short(self.reference.normal_W) and not self._repeated:
             self._repeated = True
@@ -375,6 +384,30 @@ class ProbingCycle:
             self._accept(now, "all forces were borne")
         elif now.t >= self.reference.swing_t0 - 1e-9:
             self._next_point(now)
+
+    def _ease_for_others(self, now: Observation) -> None:
+        """A stance foot yields under what another presses: the press ends before it is a collapse.
+
+        The opposite foot bears the press and its own share, more than it was probed with. Without the press it
+        has less than half of that; it is the next to be moved.
+        """
+        moved = np.where(
+            self.motion.trusted, self._watch.displacement(now.estimate.p_WF) - self._moved_before, 0.0
+        )
+        worst = int(np.argmax(moved))
+        if moved[worst] > self._settings.yield_m:
+            self._eased = f"{LEGS[worst]} yielded {1e2 * moved[worst]:.1f} cm under the press"
+            self._course.put_first(worst)
+            self.motion.ease(self._leg, now, self._settings.unload_n)
+
+    def _stay(self, now: Observation, why: str) -> None:
+        """The press was broken off: the foot stays, certified for what it has borne, or to be probed again."""
+        if self._borne_n > 0.0:
+            self._accept(now, why)
+        else:
+            self._course.put_first(self._leg)
+            self.motion.plant(now)
+            self._enter(State.PRE_OPT, now, why)
 
     def _force_held(self, now: Observation, held: Held, moved: float) -> None:
         if not self._around:
@@ -433,8 +466,8 @@ class ProbingCycle:
         leg, settings = self._leg, self._settings
         self._freed = freed
         to = self._planner.below_hip(leg, now.pose, settings.leg_up_below_hip_m)
-        # Straight up first: half the way to the place below the hip, so that the leg comes free of what it is in.
-        to[:2] = 0.5 * (to[:2] + now.estimate.p_WF[leg, :2])
+        # Half the way to the place below the hip, or straight up out of a hole, whose edge would catch the foot.
+        to[:2] += (1.0 if freed else 0.5) * (now.estimate.p_WF[leg, :2] - to[:2])
         # With the base lowered the place below the hip may be in the ground.
         to[2] = max(to[2], self._watch.safe(leg)[2] + settings.swing_height_m)
         self.motion.raise_leg(leg, now, to)
@@ -533,13 +566,10 @@ class ProbingCycle:
                 self._return_safe(now, why)
         elif self.state == State.STOPPED:
             self.stand(now, why)
-        elif self.state == State.PROBE and self._borne_n > 0.0:
-            # To lift this foot too would leave two; to probe it again would load the others once more.
-            self._accept(now, f"it bore what it was asked until {LEGS[leg]} gave way")
-            self._leave(leg, now)
+        elif self.state == State.PROBE:
+            # To lift this foot too would leave two; the base stays, as without the press little is left to bear.
+            self._stay(now, f"{LEGS[leg]} gave way under the press")
         elif self.state != State.RETURN_SAFE:
-            if self.state == State.PROBE:
-                self._course.put_first(self._leg)  # it stays down for now and is probed when its turn comes
             self.motion.plant(now)
             self._enter(State.PRE_OPT, now, why)
             self._leave(leg, now)

@@ -111,7 +111,22 @@ def test_a_foot_that_has_borne_some_when_another_sinks_is_certified_for_that():
     assert puppet.status[RL] == STANCE and puppet.status[FR] == COLLAPSING
     _kind, reason, figures, _state = puppet.kinds("accepted")[0]
     assert figures["leg"] == RL and figures["held_n"] == pytest.approx(68.0, abs=1.0)
-    assert "until FR gave way" in reason and "68 of 100 N" in reason
+    assert "FR gave way" in reason and "68 of 100 N" in reason
+    assert puppet.run(8.0, lambda: len(puppet.kinds("accepted")) == 2)
+    assert puppet.kinds("accepted")[1][2]["leg"] == FR
+
+
+def test_a_stance_foot_that_yields_under_a_press_ends_it_and_moves_next():
+    puppet = Puppet()
+    puppet.reach("PROBE")
+    puppet.run(0.35)
+    puppet.sunk[FR] = 0.02  # not a collapse yet
+    puppet.tick()
+    assert puppet.status[RL] == PROBING and puppet.cycle.reference.probe_force_W[-1, 2] < 20.0
+    puppet.run(0.1)
+    _kind, reason, figures, _state = puppet.kinds("accepted")[0]
+    assert figures["leg"] == RL and "FR yielded 2.0 cm" in reason and "68 of 100 N" in reason
+    assert not puppet.kinds("late_collapse") and puppet.status == [STANCE] * 4
     assert puppet.run(8.0, lambda: len(puppet.kinds("accepted")) == 2)
     assert puppet.kinds("accepted")[1][2]["leg"] == FR
 
