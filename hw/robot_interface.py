@@ -10,6 +10,8 @@ from typing import Protocol
 
 import numpy as np
 
+from surefoot.bus.messages import SimTruth
+
 
 @dataclass(frozen=True)
 class Sensors:
@@ -54,6 +56,9 @@ class RobotInterface(Protocol):
 
     def advance(self) -> None:
         """End the cycle: a simulator steps its physics, a driver waits for nothing. Unwritten cycles damp."""
+
+    def truth(self) -> SimTruth | None:
+        """What only a simulator knows, for logs and grading; None on a robot."""
 
     def close(self) -> None:
         """Leave the robot damping and free what is held."""

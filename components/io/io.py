@@ -55,7 +55,9 @@ class Io(Component):
                 gate=self._gate.reason,
             ),
         )
-        outbox.publish("sim/truth", self.robot.truth())
+        truth = self.robot.truth()
+        if truth is not None:
+            outbox.publish("sim/truth", truth)
         self._advance(t, law)
 
     def deactivate(self, t: float, inbox: Inbox, outbox: Outbox) -> bool:
