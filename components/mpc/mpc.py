@@ -51,7 +51,8 @@ class Mpc(Component):
         super().__init__(deployment)
         robot, settings = deployment.load_robot(), deployment.mpc
         self._dt = settings.interval_s
-        self._problem = Problem(deployment.ocp, robot, settings.intervals)
+        weights = replace(deployment.ocp.weights, force=settings.force_scale * deployment.ocp.weights.force)
+        self._problem = Problem(replace(deployment.ocp, weights=weights), robot, settings.intervals)
         self._sampler = MotionSampler(robot, settings.intervals, settings.interval_s)
         self._model = build_model(robot)
         self._data = self._model.createData()
