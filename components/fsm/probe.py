@@ -11,6 +11,11 @@ from surefoot.config.fsm import Fsm
 _HELD_WINDOW_S = 0.06  # a force is held if its mean over the end of its dwell is
 
 
+def peak_n(forces_W: np.ndarray, normal_W: np.ndarray) -> float:
+    """Largest normal component of forces (n, 3) along a unit normal (3,) [N]; 0 without any."""
+    return float((forces_W @ normal_W).max(initial=0.0))
+
+
 @dataclass(frozen=True)
 class Held:
     """One force of the envelope when its dwell is over.
@@ -57,7 +62,7 @@ class Probe:
 
     def short(self, normal_W: np.ndarray) -> bool:
         """The largest force held is too small a share of the largest asked."""
-        return self.held_n < self._settings.held_share * float((self.asked_W @ normal_W).max(initial=0.0))
+        return self.held_n < self._settings.held_share * peak_n(self.asked_W, normal_W)
 
     def limit(self, most_n: float, normal_W: np.ndarray) -> None:
         """Ask for the envelope, each force scaled down to a normal component of at most `most_n` [N]."""

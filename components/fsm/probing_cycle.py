@@ -13,7 +13,7 @@ from surefoot.components.fsm.course import AROUND_POINTS, Course
 from surefoot.components.fsm.foothold_planner import FootholdPlanner
 from surefoot.components.fsm.motion import LAND_AHEAD_S, Motion
 from surefoot.components.fsm.observation import Observation
-from surefoot.components.fsm.probe import Held, Probe
+from surefoot.components.fsm.probe import Held, Probe, peak_n
 from surefoot.components.fsm.questions import Questions
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
@@ -358,7 +358,7 @@ class ProbingCycle:
         press.begin(begin)
         where = f"around point {self._around}" if self._around else "foothold"
         where += ", again: the force fell short" if self._repeated else ""
-        peak, needed = (float((forces_W @ normal).max()) for forces_W in (press.asked_W, press.envelope_W))
+        peak, needed = peak_n(press.asked_W, normal), peak_n(press.envelope_W, normal)
         short = f" of {needed:.0f}, statics allow no more" if peak < needed - 0.5 else ""
         self._enter(State.PROBE, now, f"{where}, up to {peak:.0f} N{short}")
 
@@ -441,7 +441,7 @@ class ProbingCycle:
         self.motion.plant(now)
         if self._settings.probing:
             self.certified_n[leg] = self._borne_n
-            peak = float((self._press.envelope_W @ self.reference.normal_W).max())
+            peak = peak_n(self._press.envelope_W, self.reference.normal_W)
             if self._borne_n < self._settings.held_share * peak:
                 reason = f"{reason}; certified for {self._borne_n:.0f} of {peak:.0f} N only"
         self._event("accepted", reason, now, foot, held_n=float(self.certified_n[leg]))
