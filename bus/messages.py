@@ -7,7 +7,7 @@ B relative to W, expressed in W. Quaternions are (w, x, y, z). All units are SI.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import IntEnum, IntFlag
 
 import numpy as np
 
@@ -38,6 +38,26 @@ class LegStatus(IntEnum):
     """In contact with ground that gives way, until unloaded."""
 
 
+class Unsafe(IntFlag):
+    """Why the VFA takes a cell for unsafe (Sec. II-A); a safe cell has none of them."""
+
+    UNKNOWN = 1
+    """Nothing has been seen there."""
+    UNCERTAIN = 2
+    """Its height is not known well enough, or was seen too long ago."""
+    ROUGH = 4
+    """The ground under the foot is no plane."""
+    STEEP = 8
+    EDGE = 16
+    """The ground drops or rises within the foot's disc."""
+    LEG = 32
+    """The foot or the shank would meet the ground on the way or when it stands."""
+    REACH = 64
+    """Out of the leg's reach from the target base pose."""
+    COLLAPSED = 128
+    """Probing has found that it gives way."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HardwareState(Message):
     """`hw/state`: what the robot's sensors gave in one cycle. Nothing else reaches a controller."""
@@ -49,6 +69,27 @@ class HardwareState(Message):
     acc_B: np.ndarray = array(3, doc="accelerometer: specific force, +g upwards at rest", unit="m/s^2")
     damping: bool = flag("the command gate damps in this cycle")
     gate: str = text("why the gate damps or limits; empty when it does not")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DepthFrame(Message):
+    """`hw/depth`: one image of the body-mounted depth camera.
+
+    Frame C: x along the optical axis, y to the left and z to the top of the image. Row 0 is the top, column 0 the
+    left; the ray of a pixel leaves through the middle of its share of the image plane.
+    """
+
+    p_BC: np.ndarray = array(3, doc="camera in the trunk", unit="m")
+    quat_BC: np.ndarray = array(4, doc="camera in the trunk, (w, x, y, z)")
+    fov: np.ndarray = array(2, doc="horizontal and vertical field of view", unit="rad")
+    depth_m: np.ndarray = array(
+        -1,
+        -1,
+        dtype="float32",
+        doc="distance along the optical axis; 0 where there is none: dropped, out of range, the robot itself",
+        unit="m",
+        finite=False,
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -141,6 +182,13 @@ class MotionReference(Message):
         -1, 3, doc="forces in order; the first entry is the force before probe_t0", unit="N"
     )
 
+    region_a: np.ndarray = array(4, 3, doc="eq. (4): rows A of the swing leg's convex region")
+    region_b: np.ndarray = array(4, doc="eq. (4): b", unit="m")
+    region_active: bool = flag("false: the swing leg may touch down on the whole plane")
+    force_max_n: np.ndarray = array(
+        4, doc="largest normal force each foothold is certified for; 0: the limit of the robot", unit="N"
+    )
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Policy(Message):
@@ -182,6 +230,9 @@ class PlanRequest(Message):
     region_a: np.ndarray = array(4, 4, 3, doc="eq. (4): rows A_i of each leg's convex region")
     region_b: np.ndarray = array(4, 4, doc="eq. (4): b_i", unit="m")
     region_active: np.ndarray = array(4, doc="false: the whole plane", dtype="bool")
+    force_max_n: np.ndarray = array(
+        4, doc="largest normal force each present foothold is certified for; 0: the limit of the robot", unit="N"
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -204,20 +255,50 @@ class FootholdRequest(Message):
     """`foothold/request`: ask for the safe region nearest each target (SEND of Fig. 6)."""
 
     id: int = integer("echoed in the answer")
-    target_WF: np.ndarray = array(4, 3, doc="desired touch-down positions", unit="m")
+    target_WF: np.ndarray = array(4, 3, doc="desired touch-down positions of the foot centres", unit="m")
+    p_WF: np.ndarray = array(4, 3, doc="present foot centres: where the swings start", unit="m")
+    base_target: np.ndarray = array(6, doc="x, y, z, roll, pitch, yaw of the trunk at the end of the stride")
     normal_W: np.ndarray = array(3, doc="local surface normal")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FootholdRegions(Message):
-    """`foothold/regions`: adapted footholds and their convex regions, eq. (4)."""
+    """`foothold/regions`: adapted footholds, their convex regions of eq. (4) and the heightmaps they come from."""
 
     id: int = integer("of the request")
-    foothold_WF: np.ndarray = array(4, 3, doc="nearest safe point to each target", unit="m")
+    foothold_WF: np.ndarray = array(4, 3, doc="foot centre on the safe cell nearest each target", unit="m")
+    safe: np.ndarray = array(
+        4, doc="false: the map knows the place and no cell of it is safe; true without a map", dtype="bool"
+    )
     region_a: np.ndarray = array(4, 4, 3, doc="rows A_i: A p + b >= 0")
     region_b: np.ndarray = array(4, 4, doc="b_i", unit="m")
     region_active: np.ndarray = array(4, doc="false: no map there, the whole plane is allowed", dtype="bool")
-    reason: str = text("why a region is the whole plane")
+    held_n: np.ndarray = array(4, doc="normal force that the foothold is known to bear; 0 untested", unit="N")
+    reasons: tuple[str, ...] = names("for each leg, why it is where it is, or why it is the whole plane")
+    cell_m: float = number("side of a cell", "m")
+    heightmap_p_W: np.ndarray = array(4, 2, doc="x, y of each heightmap's first cell's centre", unit="m")
+    heightmap_m: np.ndarray = array(
+        4, 15, 15, dtype="float32", doc="foothold heightmaps, x by y; NaN unknown", unit="m", finite=False
+    )
+    heightmap_unsafe: np.ndarray = array(4, 15, 15, dtype="int64", doc="Unsafe flags of each cell; 0 safe")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ElevationGrid(Message):
+    """`map/elevation`: the robot-centric map; arrays are x by y, cells aligned with the world's axes."""
+
+    cell_m: float = number("side of a cell", "m")
+    p_W: np.ndarray = array(2, doc="x, y of the first cell's centre", unit="m")
+    height_m: np.ndarray = array(-1, -1, dtype="float32", doc="of the ground; NaN unknown", unit="m", finite=False)
+    std_m: np.ndarray = array(
+        -1, -1, dtype="float32", doc="standard deviation; NaN unknown", unit="m", finite=False
+    )
+    age_s: np.ndarray = array(-1, -1, dtype="float32", doc="since it was seen; NaN never", unit="s", finite=False)
+    held_n: np.ndarray = array(-1, -1, dtype="float32", doc="largest load that has held; 0 untested", unit="N")
+    collapsed_n: np.ndarray = array(
+        -1, -1, dtype="float32", doc="least load under which it gave way; 0 none", unit="N"
+    )
+    drift_m: float = number("correction of the map's height from the contacts", "m")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

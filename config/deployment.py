@@ -9,6 +9,7 @@ from math import sqrt
 from pathlib import Path
 from typing import Annotated, Literal
 
+from surefoot.config.elevation_map import ElevationMap
 from surefoot.config.estimator import Estimator
 from surefoot.config.fsm import Fsm
 from surefoot.config.hw import Hw
@@ -27,6 +28,7 @@ class Run:
 
     clock: Literal["simulated", "monotonic"] = "simulated"
     command: str = "forward"  # given by the operator's side once the robot stands; "" waits for one
+    vision: bool = False  # a depth camera, a map from it and footholds adapted to it; false: blind
     namespace: str = "surefoot"  # prefix of every key on the wire
     epoch_s: Annotated[float, Within(0.0, 1e10)] = 0.0  # monotonic clock at t = 0, set by the supervisor for all
     log_dir: str = "log"  # where process logs go, relative to the working directory
@@ -52,6 +54,7 @@ class Deployment:
     trajopt: Trajopt = field(default_factory=Trajopt)
     wbc: Wbc = field(default_factory=Wbc)
     fsm: Fsm = field(default_factory=Fsm)
+    elevation_map: ElevationMap = field(default_factory=ElevationMap)
 
     def __post_init__(self) -> None:
         robot = self.load_robot()

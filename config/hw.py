@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
+from surefoot.config.depth_camera import DepthCamera
 from surefoot.config.typed_toml import Within, ordered
 
 
@@ -36,6 +37,7 @@ class Hw:
     solref_s: Annotated[float, Within(0.002, 0.1)] = (
         0.005  # time constant of contacts; soft defaults sink millimetres [s]
     )
+    depth: DepthCamera = field(default_factory=DepthCamera)
 
     def __post_init__(self) -> None:
         ordered(self, "friction_min", "friction_max", "friction is drawn between the two")

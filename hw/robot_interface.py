@@ -25,6 +25,16 @@ class Sensors:
 
 
 @dataclass(frozen=True)
+class DepthImage:
+    """One image of a depth camera; frame C has x along the optical axis, y left, z up in the image."""
+
+    p_BC: np.ndarray  # (3,) camera in the trunk [m]
+    quat_BC: np.ndarray  # (4,) (w, x, y, z)
+    fov: np.ndarray  # (2,) horizontal, vertical [rad]
+    depth_m: np.ndarray  # (rows, columns) float32 along the optical axis; 0 where there is none [m]
+
+
+@dataclass(frozen=True)
 class MotorLaw:
     """tau + kp (q - q_measured) + kd (dq - dq_measured), each (12,)."""
 
@@ -50,6 +60,9 @@ class RobotInterface(Protocol):
         Raises:
             HardwareFault: no plausible reading is to be had.
         """
+
+    def depth(self) -> DepthImage | None:
+        """The depth camera's image of this instant; None between images, without vision and without a camera."""
 
     def write(self, law: MotorLaw) -> None:
         """The motor law of this cycle."""

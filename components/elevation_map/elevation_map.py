@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+import numpy as np
+
 from surefoot.bus.messages import FootholdRegions
 from surefoot.components.component import Component, Inbox, Outbox
 
@@ -26,6 +28,7 @@ class ElevationMap(Component):
                 valid=True,
                 id=request.id,
                 foothold_WF=request.target_WF,
-                reason="blind: no depth sensor, so no map",
+                safe=np.ones(4, bool),
+                reasons=("blind: no depth sensor, so no map",) * 4,
             )
             outbox.publish("foothold/regions", answer)

@@ -188,7 +188,9 @@ class ProbingCycle:
         targets = self._targets_W.copy()
         targets[self._leg] = self._candidates_W[self._candidate]
         self._targets_W = targets
-        self.questions.ask_regions(now.t, targets, self.reference.normal_W)
+        feet, normal = self.reference.p_WF, self.reference.normal_W
+        base = self._course.base_target(feet, normal)
+        self.questions.ask_regions(now.t, targets, normal, p_WF=self._feet_now(now), base_target=base)
         self._enter(State.SEND, now, reason)
 
     def _send(self, now: Observation) -> None:

@@ -19,11 +19,11 @@ class Questions:
         self.plan_request: PlanRequest | None = None
         self._id = 0
 
-    def ask_regions(self, t: float, target_WF: np.ndarray, normal_W: np.ndarray) -> None:
-        """SEND: the safe regions around targets (4, 3) [m]."""
+    def ask_regions(self, t: float, target_WF: np.ndarray, normal_W: np.ndarray, **figures) -> None:
+        """SEND: the safe regions around targets (4, 3) [m]; `figures` are the request's other fields."""
         self._id += 1
         self.foothold_request = FootholdRequest(
-            t=t, valid=True, id=self._id, target_WF=target_WF, normal_W=normal_W
+            t=t, valid=True, id=self._id, target_WF=target_WF, normal_W=normal_W, **figures
         )
 
     def ask_plan(self, t: float, answer: FootholdRegions, normal_W: np.ndarray, **figures) -> None:

@@ -91,7 +91,9 @@ class Puppet:
         questions = self.cycle.questions
         if questions.foothold_request is not None and "regions" not in self.unanswered:
             request, questions.foothold_request = questions.foothold_request, None
-            answer = FootholdRegions(t=self.t, valid=True, id=request.id, foothold_WF=request.target_WF)
+            answer = FootholdRegions(
+                t=self.t, valid=True, id=request.id, foothold_WF=request.target_WF, safe=np.ones(4, bool)
+            )
             self.cycle.regions(answer, now)
         if questions.plan_request is not None and "plan" not in self.unanswered:
             request, questions.plan_request = questions.plan_request, None
