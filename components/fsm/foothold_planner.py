@@ -90,9 +90,7 @@ class FootholdPlanner:
 
     def leg_lengths(self, pose: np.ndarray, p_WF: np.ndarray) -> np.ndarray:
         """(4,) thigh axis to foot centre [m]."""
-        d = (p_WF - pose[:3]) @ matrix_of_rpy(pose[3:]) - self._legs.hip_B
-        reach2 = np.maximum(d[:, 1] ** 2 + d[:, 2] ** 2 - self._legs.thigh_y**2, 0.0)
-        return np.sqrt(d[:, 0] ** 2 + reach2)
+        return self._legs.length((p_WF - pose[:3]) @ matrix_of_rpy(pose[3:]))
 
     def below_hip(self, leg: int, pose: np.ndarray, distance: float) -> np.ndarray:
         """(3,) point a distance [m] below a leg's nominal place under the base: where LEG_UP holds the foot."""

@@ -57,6 +57,25 @@ class LegKinematics:
         p[..., 2] = self.hip_B[:, 2] + s1 * self.thigh_y - c1 * r
         return p
 
+    def joints(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Thigh axes and knees in the base, each (..., 4, 3) [m], of joint angles (..., 4, 3) [rad]."""
+        c1, s1 = np.cos(q[..., 0]), np.sin(q[..., 0])
+        thigh, knee = np.empty(q.shape), np.empty(q.shape)
+        thigh[..., 0] = self.hip_B[:, 0]
+        thigh[..., 1] = self.hip_B[:, 1] + c1 * self.thigh_y
+        thigh[..., 2] = self.hip_B[:, 2] + s1 * self.thigh_y
+        r = self.l_thigh * np.cos(q[..., 1])
+        knee[..., 0] = thigh[..., 0] - self.l_thigh * np.sin(q[..., 1])
+        knee[..., 1] = thigh[..., 1] + s1 * r
+        knee[..., 2] = thigh[..., 2] - c1 * r
+        return thigh, knee
+
+    def length(self, p_BF: np.ndarray) -> np.ndarray:
+        """(..., 4) thigh axis to foot centre [m] of feet (..., 4, 3) in the base, in reach or not."""
+        d = p_BF - self.hip_B
+        reach2 = np.maximum(d[..., 1] ** 2 + d[..., 2] ** 2 - self.thigh_y**2, 0.0)
+        return np.sqrt(d[..., 0] ** 2 + reach2)
+
     def jacobian(self, q: np.ndarray) -> np.ndarray:
         """d(foot centre)/d(joint angles) in the base: (..., 4, 3, 3) [m/rad]."""
         c1, s1 = np.cos(q[..., 0]), np.sin(q[..., 0])

@@ -5,7 +5,7 @@ import pinocchio as pin
 import pytest
 
 from surefoot.components.robot_model import LegKinematics, build_model, foot_frame_ids
-from surefoot.config.robot import load_robot
+from surefoot.config.robot import LEGS, load_robot
 
 
 @pytest.fixture(scope="module")
@@ -36,6 +36,22 @@ def test_position_and_jacobian_are_pinocchios(legs):
             np.testing.assert_allclose(
                 kinematics.jacobian(q)[leg], jacobian[:3, 6 + 3 * leg : 9 + 3 * leg], atol=1e-12
             )
+
+
+def test_thigh_axes_and_knees_are_pinocchios_and_the_length_lies_between(legs):
+    kinematics, model = legs
+    data = model.createData()
+    for q in postures(kinematics, 20):
+        configuration = pin.neutral(model)
+        configuration[7:] = q.ravel()
+        pin.forwardKinematics(model, data, configuration)
+        thigh, knee = kinematics.joints(q)
+        for leg, name in enumerate(LEGS):
+            for point, joint in ((thigh, "thigh"), (knee, "calf")):
+                placed = data.oMi[model.getJointId(f"{name}_{joint}")].translation
+                np.testing.assert_allclose(point[leg], placed, atol=1e-12)
+        feet = kinematics.position(q)
+        np.testing.assert_allclose(kinematics.length(feet), np.linalg.norm(feet - thigh, axis=1), atol=1e-12)
 
 
 def test_motion_is_position_and_jacobian_and_their_derivatives(legs):
