@@ -5,9 +5,28 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from surefoot.config.quantities import Share
 from surefoot.config.typed_toml import Within
 
 Length = Annotated[float, Within(0.1, 20.0)]
+Tolerance = Annotated[float, Within(0.001, 0.5)]  # 0 would be met by no measured ground
+
+
+@dataclass(frozen=True)
+class Vfa:
+    """Visual foothold adaptation (Sec. II-A): what a cell must be to be safe."""
+
+    unmapped_share: Share = 0.5  # of a heightmap's cells unknown: above it there is no map, the plane is allowed
+    std_max_m: Tolerance = 0.02  # of a cell's height
+    # Hind feet come to what the camera saw ahead of the front feet a metre of walking, or seven minutes, before.
+    age_max_s: Annotated[float, Within(1.0, 1e5)] = 600.0
+    disc_margin_m: Annotated[float, Within(0.0, 0.1)] = 0.005  # round the foot's disc, for an error of the map
+    # Share of the cells under a foot that may be unknown, or uncertain; a half still tells its plane.
+    disc_gaps_max: Annotated[float, Within(0.0, 0.5)] = 0.1
+    plane_error_max_m: Tolerance = 0.02  # ROUGH: farthest cell from the plane fitted under the foot
+    slope_max: Annotated[float, Within(0.05, 1.2)] = 0.5236  # STEEP: of that plane [rad]; 30 degrees
+    edge_max_m: Tolerance = 0.03  # EDGE: difference in height of cells close to each other under the foot
+    clearance_m: Annotated[float, Within(0.0, 0.2)] = 0.02  # LEG: between the ground and foot, calf or thigh
 
 
 @dataclass(frozen=True)
@@ -17,3 +36,4 @@ class ElevationMap:
     cell_m: Annotated[float, Within(0.005, 0.1)] = 0.02
     length_m: Length = 2.4  # along the world's x axis
     width_m: Length = 1.6  # along y
+    vfa: Vfa = Vfa()
