@@ -200,9 +200,9 @@ class ProbingCycle:
     def _on_regions(self, answer: FootholdRegions, now: Observation) -> None:
         leg, feet, normal = self._leg, self.reference.p_WF, self.reference.normal_W
         foothold, settings = answer.foothold_WF[leg], self._settings
-        reserve = settings.around_radius_m if settings.probing and settings.probe_around else 0.0
-        ahead = reserve * np.append(self._course.direction, 0.0)
-        pose = self._planner.support_pose(leg, foothold, feet, normal, self._course.heading, now.com_B, ahead)
+        around = settings.around_radius_m if settings.probing and settings.probe_around else 0.0
+        beyond = around * np.append(self._course.direction, 0.0) - settings.depth_reserve_m * normal
+        pose = self._planner.support_pose(leg, foothold, feet, normal, self._course.heading, now.com_B, beyond)
         if pose is None:
             self._event("rejected", "out of reach at every base height", now, foothold)
             self._next_candidate(now)
@@ -290,9 +290,11 @@ class ProbingCycle:
         settings, reference, leg = self._settings, self.reference, self._leg
         due = now.t >= reference.swing_t1 - LAND_AHEAD_S
         if now.estimate.contact[leg]:
+            # On its way back the foot knows where the ground is: what it meets before is in its way.
+            back = self.state == State.RETURN_SAFE
             armed = reference.swing_t0 + settings.contact_armed * (reference.swing_t1 - reference.swing_t0)
             # In mid-swing the leg's own inertia looks like a light contact: only a firm one counts as early.
-            if due or (now.t >= armed and now.normal_force(leg) > settings.early_contact_n):
+            if due or (not back and now.t >= armed and now.normal_force(leg) > settings.early_contact_n):
                 self._touched(now)
                 return
         if due:
@@ -330,8 +332,16 @@ class ProbingCycle:
             self._accept(now, "contact; probing is off")
         elif self._around > AROUND_POINTS:
             self._accept(now, "all forces were borne here and around")
+        elif self._around and self._drop(foot) > self._settings.around_drop_m:
+            why = f"the ground beside the foothold lies {1e2 * self._drop(foot):.1f} cm lower"
+            self._event("rejected", why, now, foot)
+            self._begin_leg_up(now, why)
         else:
             self._begin_probe(now)
+
+    def _drop(self, foot_W: np.ndarray) -> float:
+        """How much lower a point around it is than the foothold, along the normal [m]."""
+        return float((self._foothold_W - foot_W) @ self.reference.normal_W)
 
     # PROBE, PROBE_AROUND --------------------------------------------------------------------------------
 
