@@ -11,7 +11,7 @@ from surefoot.bus.messages import FootholdRegions, LegStatus, MotionReference, P
 from surefoot.components.fsm.balance import Balance
 from surefoot.components.fsm.course import AROUND_POINTS, Course
 from surefoot.components.fsm.foothold_planner import FootholdPlanner
-from surefoot.components.fsm.motion import LAND_AHEAD_S, Motion
+from surefoot.components.fsm.motion import LAND_AHEAD_S, Motion, Region
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.probe import Held, Probe, peak_n
 from surefoot.components.fsm.questions import Questions
@@ -62,6 +62,7 @@ class ProbingCycle:
         self._borne_n = 0.0  # largest force this candidate has held
         self._candidates_W = np.zeros((0, 3))
         self._targets_W = np.zeros((4, 3))
+        self._answer = FootholdRegions()  # the map's, of this candidate
         self._foothold_W = np.zeros(3)
         self._support_pose = np.zeros(6)
         self._halt = ""  # why the robot is to stop once the leg is back
@@ -199,6 +200,7 @@ class ProbingCycle:
 
     def _on_regions(self, answer: FootholdRegions, now: Observation) -> None:
         leg, feet, normal = self._leg, self.reference.p_WF, self.reference.normal_W
+        self._answer = answer
         foothold, settings = answer.foothold_WF[leg], self._settings
         reserve = settings.around_radius_m if settings.probing and settings.probe_around else 0.0
         ahead = reserve * np.append(self._course.direction, 0.0)
@@ -243,7 +245,7 @@ class ProbingCycle:
         duration = distance / settings.shift_speed
         if not self.motion.in_air:
             duration = max(settings.shift_s, duration)
-            self._plan_swing(now.t + duration, self._foothold_W, now)
+            self._plan_swing(now.t + duration, self._foothold_W, now, self._region)
         self.motion.shift_base(now, self._support_pose, duration)
         self._balance.begin_shift()
         self._enter(State.MOVE, now, f"base shift for {LEGS[self._leg]}")
@@ -257,7 +259,7 @@ class ProbingCycle:
         ready = self._balance.ready(now, reference, self._leg)
         if motion.in_air:
             if ready and now.t >= reference.base_t1:
-                self._plan_swing(now.t, self._foothold_W, now)
+                self._plan_swing(now.t, self._foothold_W, now, self._region)
                 self._begin_swing(now)
         elif ready and now.t >= reference.swing_t0:
             self._begin_swing(now)
@@ -273,9 +275,9 @@ class ProbingCycle:
         self.motion.lift_off(now, settings.swing_s)
         self._enter(State.DETECT_CONTACT, now, f"{LEGS[self._leg]} lifts off")
 
-    def _plan_swing(self, start: float, to: np.ndarray, now: Observation) -> None:
+    def _plan_swing(self, start: float, to: np.ndarray, now: Observation, region: Region | None = None) -> None:
         settings = self._settings
-        self.motion.plan_swing(self._leg, start, to, now, settings.swing_s, settings.swing_height_m)
+        self.motion.plan_swing(self._leg, start, to, now, settings.swing_s, settings.swing_height_m, region)
         self._touch_z = float(to[2])
 
     def _plan_hop(self, start: float, to: np.ndarray, now: Observation) -> None:
@@ -617,6 +619,12 @@ class ProbingCycle:
             self._rest(now, why)
 
     # ----------------------------------------------------------------------------------------------------
+
+    @property
+    def _region(self) -> Region | None:
+        """Where the map lets the moving foot touch down; None is the whole plane."""
+        answer, leg = self._answer, self._leg
+        return Region(answer.region_a[leg], answer.region_b[leg]) if answer.region_active[leg] else None
 
     def _footing(self, now: Observation) -> np.ndarray:
         """(4, 3) the feet, with one that is in the air at its safe foothold."""
