@@ -63,6 +63,8 @@ class ProbingCycle:
         self._candidates_W = np.zeros((0, 3))
         self._targets_W = np.zeros((4, 3))
         self._answer = FootholdRegions()  # the map's, of this candidate
+        self._failed_W: list[np.ndarray] = []  # footholds that gave way under this leg since it set out
+        self._foot_radius_m = robot.foot.radius
         self._foothold_W = np.zeros(3)
         self._support_pose = np.zeros(6)
         self._halt = ""  # why the robot is to stop once the leg is back
@@ -181,6 +183,7 @@ class ProbingCycle:
         self._leg, self._candidate, self._around = leg, 0, 0
         self._targets_W = self._course.targets(feet, normal)
         self._candidates_W = self._course.candidates(self._targets_W[leg], feet, normal)
+        self._failed_W.clear()
         self.motion.on_plane(now)
         self._ask(now, f"{LEGS[leg]} is next")
 
@@ -202,6 +205,11 @@ class ProbingCycle:
         leg, feet, normal = self._leg, self.reference.p_WF, self.reference.normal_W
         self._answer = answer
         foothold, settings = answer.foothold_WF[leg], self._settings
+        unfit = self._unfit(answer)
+        if unfit:
+            self._event("rejected", unfit, now, foothold)
+            self._next_candidate(now)
+            return
         reserve = settings.around_radius_m if settings.probing and settings.probe_around else 0.0
         ahead = reserve * np.append(self._course.direction, 0.0)
         pose = self._planner.support_pose(leg, foothold, feet, normal, self._course.heading, now.com_B, ahead)
@@ -221,6 +229,17 @@ class ProbingCycle:
         )
         self._foothold_W = foothold.copy()
         self._enter(State.OPT, now, "optimising the stride")
+
+    def _unfit(self, answer: FootholdRegions) -> str:
+        """Why the answer's foothold is not worth a step, or "": the map forbids it, or it has been tried."""
+        leg = self._leg
+        if not answer.safe[leg]:
+            return answer.reasons[leg] if answer.reasons else "the map knows no safe cell near it"
+        for failed_W in self._failed_W:
+            apart = float(np.hypot(*(answer.foothold_WF[leg] - failed_W)[:2]))
+            if apart < 0.5 * self._foot_radius_m:
+                return f"{1e3 * apart:.0f} mm from a foothold that gave way: not tried twice"
+        return ""
 
     def _opt(self, now: Observation) -> None:
         if now.t - self._entered > 2.0:
@@ -455,6 +474,7 @@ class ProbingCycle:
 
     def _collapsed(self, now: Observation, moved: float) -> None:
         press = self._press
+        self._failed_W.append(self._answer.foothold_WF[self._leg])
         index = min(press.told, len(press.asked_W) - 1)
         why = f"the foot moved {1e2 * moved:.1f} cm, limit {1e2 * self._settings.collapse_m:.1f} cm"
         asked = press.asked_n(index, self.reference.normal_W)

@@ -6,13 +6,11 @@ import numpy as np
 
 from surefoot.bus.messages import MotionReference
 from surefoot.components.gait.swing_spline import SwingSpline
+from surefoot.components.ocp.foot_placement import LANDING_SHARE
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotations import matrices_of_rpy
 from surefoot.config.robot import GRAVITY, Robot
-
-REGION_SHARE = 0.2
-"""Eq. (4) acts over this last share of a swing too: the foot comes down inside its region, not to its edge."""
 
 
 class MotionSampler:
@@ -89,7 +87,7 @@ class MotionSampler:
             return _NO_REGION_A, _NO_REGION_B, active
         a, b = _NO_REGION_A.copy(), _NO_REGION_B.copy()
         a[leg], b[leg] = reference.region_a, reference.region_b
-        last_s = REGION_SHARE * (reference.swing_t1 - reference.swing_t0)
+        last_s = LANDING_SHARE * (reference.swing_t1 - reference.swing_t0)
         active[:, leg] = times >= reference.swing_t1 - last_s
         return a, b, active
 
