@@ -11,7 +11,7 @@ from surefoot.bus.messages import FootholdRegions, LegStatus, MotionReference, P
 from surefoot.components.fsm.balance import Balance
 from surefoot.components.fsm.course import AROUND_POINTS, Course
 from surefoot.components.fsm.foothold_planner import FootholdPlanner
-from surefoot.components.fsm.motion import LAND_AHEAD_S, Motion
+from surefoot.components.fsm.motion import LAND_AHEAD_S, Motion, Region
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.probe import Held, Probe, peak_n
 from surefoot.components.fsm.questions import Questions
@@ -62,6 +62,9 @@ class ProbingCycle:
         self._borne_n = 0.0  # largest force this candidate has held
         self._candidates_W = np.zeros((0, 3))
         self._targets_W = np.zeros((4, 3))
+        self._answer = FootholdRegions()  # the map's, of this candidate
+        self._failed_W: list[np.ndarray] = []  # footholds that were tried for this leg in vain since it set out
+        self._foot_radius_m = robot.foot.radius
         self._foothold_W = np.zeros(3)
         self._support_pose = np.zeros(6)
         self._halt = ""  # why the robot is to stop once the leg is back
@@ -180,6 +183,7 @@ class ProbingCycle:
         self._leg, self._candidate, self._around = leg, 0, 0
         self._targets_W = self._course.targets(feet, normal)
         self._candidates_W = self._course.candidates(self._targets_W[leg], feet, normal)
+        self._failed_W.clear()
         self.motion.on_plane(now)
         self._ask(now, f"{LEGS[leg]} is next")
 
@@ -199,9 +203,16 @@ class ProbingCycle:
 
     def _on_regions(self, answer: FootholdRegions, now: Observation) -> None:
         leg, feet, normal = self._leg, self.reference.p_WF, self.reference.normal_W
+        self._answer = answer
         foothold, settings = answer.foothold_WF[leg], self._settings
+        unfit = self._unfit(answer)
+        if unfit:
+            self._event("rejected", unfit, now, foothold)
+            self._next_candidate(now)
+            return
         around = settings.around_radius_m if settings.probing and settings.probe_around else 0.0
-        beyond = around * np.append(self._course.direction, 0.0) - settings.depth_reserve_m * normal
+        deeper = 0.0 if answer.region_active[leg] else settings.depth_reserve_m  # a map knows how deep it is
+        beyond = around * np.append(self._course.direction, 0.0) - deeper * normal
         pose = self._planner.support_pose(leg, foothold, feet, normal, self._course.heading, now.com_B, beyond)
         if pose is None:
             self._event("rejected", "out of reach at every base height", now, foothold)
@@ -219,6 +230,17 @@ class ProbingCycle:
         )
         self._foothold_W = foothold.copy()
         self._enter(State.OPT, now, "optimising the stride")
+
+    def _unfit(self, answer: FootholdRegions) -> str:
+        """Why the answer's foothold is not worth a step, or "": the map forbids it, or it has been tried."""
+        leg = self._leg
+        if not answer.safe[leg]:
+            return answer.reasons[leg] if answer.reasons else "the map knows no safe cell near it"
+        for failed_W in self._failed_W:
+            apart = float(np.hypot(*(answer.foothold_WF[leg] - failed_W)[:2]))
+            if apart < 0.5 * self._foot_radius_m:
+                return f"{1e3 * apart:.0f} mm from a foothold tried in vain: not tried twice"
+        return ""
 
     def _opt(self, now: Observation) -> None:
         if now.t - self._entered > 2.0:
@@ -243,7 +265,7 @@ class ProbingCycle:
         duration = distance / settings.shift_speed
         if not self.motion.in_air:
             duration = max(settings.shift_s, duration)
-            self._plan_swing(now.t + duration, self._foothold_W, now)
+            self._plan_swing(now.t + duration, self._foothold_W, now, self._region)
         self.motion.shift_base(now, self._support_pose, duration)
         self._balance.begin_shift()
         self._enter(State.MOVE, now, f"base shift for {LEGS[self._leg]}")
@@ -257,7 +279,7 @@ class ProbingCycle:
         ready = self._balance.ready(now, reference, self._leg)
         if motion.in_air:
             if ready and now.t >= reference.base_t1:
-                self._plan_swing(now.t, self._foothold_W, now)
+                self._plan_swing(now.t, self._foothold_W, now, self._region)
                 self._begin_swing(now)
         elif ready and now.t >= reference.swing_t0:
             self._begin_swing(now)
@@ -273,9 +295,9 @@ class ProbingCycle:
         self.motion.lift_off(now, settings.swing_s)
         self._enter(State.DETECT_CONTACT, now, f"{LEGS[self._leg]} lifts off")
 
-    def _plan_swing(self, start: float, to: np.ndarray, now: Observation) -> None:
+    def _plan_swing(self, start: float, to: np.ndarray, now: Observation, region: Region | None = None) -> None:
         settings = self._settings
-        self.motion.plan_swing(self._leg, start, to, now, settings.swing_s, settings.swing_height_m)
+        self.motion.plan_swing(self._leg, start, to, now, settings.swing_s, settings.swing_height_m, region)
         self._touch_z = float(to[2])
 
     def _plan_hop(self, start: float, to: np.ndarray, now: Observation) -> None:
@@ -477,6 +499,8 @@ class ProbingCycle:
         """
         leg, settings = self._leg, self._settings
         self._freed = freed
+        if not freed:
+            self._failed_W.append(self._answer.foothold_WF[leg])
         to = self._planner.below_hip(leg, now.pose, settings.leg_up_below_hip_m)
         # Half the way to the place below the hip, or straight up out of a hole, whose edge would catch the foot.
         to[:2] += (1.0 if freed else 0.5) * (now.estimate.p_WF[leg, :2] - to[:2])
@@ -627,6 +651,12 @@ class ProbingCycle:
             self._rest(now, why)
 
     # ----------------------------------------------------------------------------------------------------
+
+    @property
+    def _region(self) -> Region | None:
+        """Where the map lets the moving foot touch down; None is the whole plane."""
+        answer, leg = self._answer, self._leg
+        return Region(answer.region_a[leg], answer.region_b[leg]) if answer.region_active[leg] else None
 
     def _footing(self, now: Observation) -> np.ndarray:
         """(4, 3) the feet, with one that is in the air at its safe foothold."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from surefoot.bus.messages import MotionReference, PlanRequest
 from surefoot.components.gait.swing_spline import SwingSpline
+from surefoot.components.ocp.foot_placement import LANDING_SHARE
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotations import matrices_of_rpy
@@ -53,7 +54,8 @@ class Stride:
             contact[in_air, leg] = False
             p_WF[in_air, leg], v_WF[in_air, leg], _ = SwingSpline(swing).sample(t[in_air])
             p_WF[after, leg] = request.target_WF[leg]
-            region_active[after, leg] = request.region_active[leg]
+            lands = t > landing - LANDING_SHARE * settings.swing_s - 5e-10
+            region_active[lands, leg] = request.region_active[leg]
         share = (t / t[-1])[:, None]
         pose = base_now + share * (request.base_target - base_now)
         R_WB = matrices_of_rpy(pose[:, 3:])

@@ -91,6 +91,24 @@ def test_blind_the_footholds_are_the_targets_and_the_base_arrives():
     assert result.x.shape == (81, 24) and result.u.shape == (80, 24)
 
 
+def test_adapted_footholds_are_in_their_regions_at_the_height_of_the_ground_there():
+    ground = np.array([[0.0, 0.0, 0.03], [0.0, 0.0, -0.02], [0.0, 0.0, 0.01], [0.0, 0.0, 0.0]])
+    target = FEET + FORWARD + ground
+    A = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
+    centre = target - [0.03, 0.0, 0.0]
+    b = 0.02 - np.array([A @ point for point in centre])
+    active = np.array([True, False, True, True])
+    request = replace(REQUEST, target_WF=target, region_a=np.tile(A, (4, 1, 1)), region_b=b, region_active=active)
+    result = plan(0, request)
+    assert result.status == "ok"
+    np.testing.assert_array_equal(result.footholds_WF[:, 2], target[:, 2])
+    np.testing.assert_array_equal(result.footholds_WF[1], target[1])
+    # The target is 1 cm outside its region; the foot that moves first is the one whose foothold is used.
+    leg = CRAWL[0]
+    assert (A @ target[leg] + b[leg]).min() == pytest.approx(-0.01)
+    assert (A @ result.footholds_WF[leg] + b[leg]).min() > -0.001
+
+
 def test_without_an_estimate_the_plan_says_so():
     result, trouble = plan_and_trouble(0, estimate=None)
     assert not result.valid and "is the estimator running" in result.status
