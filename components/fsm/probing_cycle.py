@@ -34,6 +34,7 @@ class ProbingCycle:
         motion: what is asked of the MPC and the whole-body controller.
         questions: what it asks of the map and of the trajectory optimisation.
         certified_n: (4,) largest normal force each foothold has really borne [N].
+        displaced_m: (4,) how far the foot had moved under it from where it touched down [m].
         finished: every foot has advanced by the goal.
     """
 
@@ -51,7 +52,7 @@ class ProbingCycle:
         self.questions = Questions()
         self.state = State.STOPPED
         self.reason = ""
-        self.certified_n = np.zeros(4)
+        self.certified_n, self.displaced_m = np.zeros(4), np.zeros(4)
         self.finished = False
         self._leg = -1
         self._candidate = 0
@@ -59,7 +60,7 @@ class ProbingCycle:
         self._repeated = self._freed = False
         self._eased = ""  # why the press is broken off
         self._moved_before = np.zeros(4)
-        self._borne_n = 0.0  # largest force this candidate has held
+        self._borne_n = self._borne_m = 0.0  # largest force this candidate has held, displacement under it
         self._candidates_W = np.zeros((0, 3))
         self._targets_W = np.zeros((4, 3))
         self._answer = FootholdRegions()  # the map's, of this candidate
@@ -96,6 +97,7 @@ class ProbingCycle:
         for leg in range(4):
             self.motion.trust(leg)
         self._watch.begin(now.estimate.p_WF)
+        self.certified_n, self.displaced_m = np.zeros(4), np.zeros(4)
         self.stand(now, "standing")
 
     def stand(self, now: Observation, reason: str) -> None:
@@ -162,6 +164,7 @@ class ProbingCycle:
             around=self._around,
             force_index=min(press.told, len(press.asked_W) - 1) if self.state == State.PROBE else -1,
             finished=self.finished,
+            force_max_n=self._force_max_n,
         )
 
     @property
@@ -227,6 +230,7 @@ class ProbingCycle:
             p_WF=self._feet_now(now),
             lifted=self.motion.in_air,
             base_target=self._course.base_target(feet, normal),
+            force_max_n=self._force_max_n,
         )
         self._foothold_W = foothold.copy()
         self._enter(State.OPT, now, "optimising the stride")
@@ -344,7 +348,7 @@ class ProbingCycle:
         self._watch.touched(leg, foot)
         self._repeated = False
         if not self._around:
-            self._borne_n = 0.0
+            self._borne_n = self._borne_m = 0.0
         if self.state == State.RETURN_SAFE:
             self.motion.touch_down(now, LegStatus.COLLAPSING if self._watch.sunk[leg] else LegStatus.STANCE)
             self._returned(now, self.reason)
@@ -444,8 +448,8 @@ class ProbingCycle:
             self._enter(State.PRE_OPT, now, why)
 
     def _force_held(self, now: Observation, held: Held, moved: float) -> None:
-        if not self._around:
-            self._borne_n = max(held.held_n, self._borne_n)
+        if not self._around and held.held_n > self._borne_n:
+            self._borne_n, self._borne_m = held.held_n, moved
         short = "" if held.enough else ", short of the asked force"
         self._event(
             "force_held",
@@ -474,11 +478,12 @@ class ProbingCycle:
         self._course.settle(leg)
         self.motion.plant(now)
         if self._settings.probing:
-            self.certified_n[leg] = self._borne_n
+            self.certified_n[leg], self.displaced_m[leg] = self._borne_n, self._borne_m
             peak = peak_n(self._press.envelope_W, self.reference.normal_W)
             if self._borne_n < self._settings.held_share * peak:
                 reason = f"{reason}; certified for {self._borne_n:.0f} of {peak:.0f} N only"
-        self._event("accepted", reason, now, foot, held_n=float(self.certified_n[leg]))
+        held_n, moved = float(self.certified_n[leg]), float(self.displaced_m[leg])
+        self._event("accepted", reason, now, foot, held_n=held_n, displacement_m=moved)
         self._enter(State.PRE_OPT, now, f"{LEGS[leg]} stands safely")
 
     # Collapse, LEG_UP, RETURN_SAFE ----------------------------------------------------------------------
@@ -657,6 +662,12 @@ class ProbingCycle:
         """Where the map lets the moving foot touch down; None is the whole plane."""
         answer, leg = self._answer, self._leg
         return Region(answer.region_a[leg], answer.region_b[leg]) if answer.region_active[leg] else None
+
+    @property
+    def _force_max_n(self) -> np.ndarray:
+        """(4,) what each foothold is certified for [N]; 0, no cap, under test, in the air or sinking."""
+        capped = self.motion.trusted & self._settings.cap_forces
+        return np.where(capped, self.certified_n, 0.0)
 
     def _footing(self, now: Observation) -> np.ndarray:
         """(4, 3) the feet, with one that is in the air at its safe foothold."""

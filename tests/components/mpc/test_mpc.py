@@ -89,6 +89,25 @@ def test_a_swing_to_a_point_outside_its_region_is_planned_to_come_down_inside():
     assert ends[0] < -0.01 and ends[1] > ends[0] + 0.01
 
 
+def test_certified_loads_cap_the_nodes_and_unknown_ones_do_not():
+    sample = MotionSampler(ROBOT, 67, 0.015).sample
+    nodes = sample(replace(STAND, force_max_n=np.array([130.0, 0.0, 30.0, 119.0])), 0.0)
+    np.testing.assert_allclose(nodes.force_max_n, np.tile([130.0, np.inf, 0.45 * WEIGHT, 119.0], (68, 1)))
+    assert np.isinf(sample(STAND, 0.0).force_max_n).all()
+
+
+def test_the_policy_loads_no_foot_above_its_certificate():
+    lean = replace(STAND, base_to=POSE + [0.18, 0.10, 0.0, 0.0, 0.0, 0.0])  # towards the front left foot
+    most = []
+    for certified in (0.0, 115.0):
+        loop = Loop()
+        force_max_n = np.array([certified, 0.0, 0.0, 0.0])
+        for tick in range(30):
+            policy = loop.tick(0.01 * tick, replace(lean, force_max_n=force_max_n))
+        most.append(policy.u[:60, 2].max())
+    assert most[0] > 125.0 and most[1] < 116.0
+
+
 def test_probing_forces_follow_each_other_with_a_blend():
     forces = np.array([[0.0, 0.0, 20.0]] + [[0.0, 0.0, 40.0 + 10.0 * i] for i in range(6)])
     reference = replace(

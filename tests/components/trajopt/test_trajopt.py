@@ -10,8 +10,10 @@ from surefoot.bus.codec import check
 from surefoot.bus.messages import PlanRequest, StateEstimate
 from surefoot.components.component import Inbox, Outbox
 from surefoot.components.trajopt.envelope import grf_envelope
+from surefoot.components.trajopt.stride import Stride
 from surefoot.components.trajopt.trajopt import Trajopt
 from surefoot.config.deployment import Deployment
+from surefoot.config.fsm import Fsm
 from surefoot.config.robot import GRAVITY
 from surefoot.config.trajopt import Trajopt as Settings
 
@@ -82,6 +84,30 @@ def test_the_plan_moves_one_leg_after_the_other_and_obeys_newton(first):
     acceleration = np.diff(result.x[:, :3], axis=0) / result.dt
     expected = force.sum(axis=1) / ROBOT.mass - [0.0, 0.0, GRAVITY]
     np.testing.assert_allclose(acceleration, expected, atol=1e-9)
+
+
+def test_a_certified_foothold_bears_no_more_until_its_leg_swings():
+    def front_left(**settings):
+        force = plan(3, replace(REQUEST, force_max_n=certified), **settings).u[:, 2]
+        return force[: round(2.35 / 0.05)].max()  # it is the third to swing
+
+    certified = np.zeros(4)
+    cap = 0.45 * WEIGHT
+    assert front_left() > cap + 3.0
+    certified[0] = cap
+    assert front_left() < cap + 0.5
+
+
+def test_nobody_has_tried_the_foothold_that_a_leg_swings_to():
+    certified = np.array([130.0, 0.0, 120.0, 60.0])
+    request = replace(REQUEST, force_max_n=certified, leg_order=CRAWL)
+    limits = Stride(ROBOT, Settings(), Fsm()).sample(request, np.concatenate([BASE, np.zeros(3)])).force_max_n
+    t = 0.05 * np.arange(81)
+    for place, leg in enumerate(CRAWL):
+        now = max(certified[leg], 0.45 * WEIGHT) if certified[leg] else np.inf
+        before, after = t < place + 0.35 - 1e-9, t > place + 1.0 + 1e-9
+        np.testing.assert_allclose(limits[before, leg], now)
+        assert np.isinf(limits[after, leg]).all()
 
 
 def test_blind_the_footholds_are_the_targets_and_the_base_arrives():
