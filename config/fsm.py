@@ -37,6 +37,7 @@ class Fsm:
     base_height_min_m: Reach = 0.27  # of the hip axes; the base is lowered as far as this to reach a candidate
     base_height_step_m: Annotated[float, Within(0.001, 0.1)] = 0.01
     leg_length_plan_m: Reach = 0.40  # planned reach: eq. (5) keeps the base a few centimetres short of its pose
+    depth_reserve_m: Distance = 0.0  # the ground of a candidate may lie this much lower and must still be in reach
     leg_length_max_m: Reach = 0.470  # a foot that looks for ground stops here (Sec. II-D.4)
 
     # Base shift before a swing.
@@ -79,6 +80,7 @@ class Fsm:
     # Around the foothold.
     probe_around: bool = True
     around_radius_m: Advance = 0.025  # the foot pad's radius (Sec. II-D.5)
+    around_drop_m: Distance = 0.02  # a foothold beside which the ground lies this much lower is on an edge
     hop_s: Flight = 0.2
     hop_height_m: Height = 0.02
 

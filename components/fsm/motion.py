@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,19 @@ LAND_AHEAD_S = 0.03
 _UP = np.array([0.0, 0.0, 1.0])
 _NONE = -1
 _ALWAYS = 1e9  # end of a constraint that lasts until it is taken away [s]
+
+
+@dataclass(frozen=True)
+class Region:
+    """Eq. (4): A p + b >= 0 for the place p (3,) where a foot touches down [m].
+
+    Attributes:
+        a: (4, 3) rows A.
+        b: (4,) [m].
+    """
+
+    a: np.ndarray
+    b: np.ndarray
 
 
 class Motion:
@@ -96,6 +109,7 @@ class Motion:
             swing_leg=_NONE,
             support_leg=_NONE,
             probe_leg=_NONE,
+            **_within(None),
         )
 
     def on_plane(self, now: Observation) -> None:
@@ -110,9 +124,16 @@ class Motion:
         )
 
     def plan_swing(
-        self, leg: int, start: float, to: np.ndarray, now: Observation, duration: float, height: float
+        self,
+        leg: int,
+        start: float,
+        to: np.ndarray,
+        now: Observation,
+        duration: float,
+        height: float,
+        region: Region | None = None,
     ) -> None:
-        """A leg is to lift off at a time and land at a point (3,)."""
+        """A leg is to lift off at a time and land at a point (3,), inside a region where there is one."""
         settings = self._settings
         self.reference = replace(
             self.reference,
@@ -125,6 +146,7 @@ class Motion:
             swing_v_lift=settings.swing_v_lift,
             swing_v_touch=settings.swing_v_touch,
             swing_lands=True,
+            **_within(region),
             **self._support(leg, start, now.t),
         )
 
@@ -173,8 +195,8 @@ class Motion:
     def touch_down(self, now: Observation, ground: LegStatus) -> None:
         """The swinging foot stands where it is, on ground of this kind."""
         self._ground[self.reference.swing_leg] = ground
-        feet = now.estimate.p_WF.copy()
-        self.reference = replace(self.reference, p_WF=feet, leg_status=self._ground.copy(), swing_leg=_NONE)
+        feet, status = now.estimate.p_WF.copy(), self._ground.copy()
+        self.reference = replace(self.reference, p_WF=feet, leg_status=status, swing_leg=_NONE, **_within(None))
 
     def press(self, leg: int, start: float, forces_W: np.ndarray) -> None:
         """Eq. (6): forces (n, 3) for their dwell each, after the first, which is the one that acts now."""
@@ -210,6 +232,7 @@ class Motion:
             # The foot is falling with the ground: to stop it in one tick would throw the base over.
             swing_v_from=now.estimate.v_WF[leg].copy(),
             swing_lands=False,
+            **_within(None),
             **self._support(leg, now.t, now.t),
         )
 
@@ -224,3 +247,10 @@ class Motion:
             "support_t1": _ALWAYS,
             "support_margin_m": self._settings.margin_m,
         }
+
+
+def _within(region: Region | None) -> dict:
+    """Eq. (4) of a swing to a foothold of the map; hops, ways back and LEG_UP have the whole plane."""
+    if region is None:
+        return {"region_a": np.zeros((4, 3)), "region_b": np.zeros(4), "region_active": False}
+    return {"region_a": region.a, "region_b": region.b, "region_active": True}

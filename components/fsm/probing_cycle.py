@@ -11,7 +11,7 @@ from surefoot.bus.messages import FootholdRegions, LegStatus, MotionReference, P
 from surefoot.components.fsm.balance import Balance
 from surefoot.components.fsm.course import AROUND_POINTS, Course
 from surefoot.components.fsm.foothold_planner import FootholdPlanner
-from surefoot.components.fsm.motion import LAND_AHEAD_S, Motion
+from surefoot.components.fsm.motion import LAND_AHEAD_S, Motion, Region
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.probe import Held, Probe, peak_n
 from surefoot.components.fsm.questions import Questions
@@ -34,6 +34,7 @@ class ProbingCycle:
         motion: what is asked of the MPC and the whole-body controller.
         questions: what it asks of the map and of the trajectory optimisation.
         certified_n: (4,) largest normal force each foothold has really borne [N].
+        displaced_m: (4,) how far the foot had moved under it from where it touched down [m].
         finished: every foot has advanced by the goal.
     """
 
@@ -51,7 +52,7 @@ class ProbingCycle:
         self.questions = Questions()
         self.state = State.STOPPED
         self.reason = ""
-        self.certified_n = np.zeros(4)
+        self.certified_n, self.displaced_m = np.zeros(4), np.zeros(4)
         self.finished = False
         self._leg = -1
         self._candidate = 0
@@ -59,9 +60,12 @@ class ProbingCycle:
         self._repeated = self._freed = False
         self._eased = ""  # why the press is broken off
         self._moved_before = np.zeros(4)
-        self._borne_n = 0.0  # largest force this candidate has held
+        self._borne_n = self._borne_m = 0.0  # largest force this candidate has held, displacement under it
         self._candidates_W = np.zeros((0, 3))
         self._targets_W = np.zeros((4, 3))
+        self._answer = FootholdRegions()  # the map's, of this candidate
+        self._failed_W: list[np.ndarray] = []  # footholds that were tried for this leg in vain since it set out
+        self._foot_radius_m = robot.foot.radius
         self._foothold_W = np.zeros(3)
         self._support_pose = np.zeros(6)
         self._halt = ""  # why the robot is to stop once the leg is back
@@ -93,6 +97,7 @@ class ProbingCycle:
         for leg in range(4):
             self.motion.trust(leg)
         self._watch.begin(now.estimate.p_WF)
+        self.certified_n, self.displaced_m = np.zeros(4), np.zeros(4)
         self.stand(now, "standing")
 
     def stand(self, now: Observation, reason: str) -> None:
@@ -159,6 +164,7 @@ class ProbingCycle:
             around=self._around,
             force_index=min(press.told, len(press.asked_W) - 1) if self.state == State.PROBE else -1,
             finished=self.finished,
+            force_max_n=self._force_max_n,
         )
 
     @property
@@ -180,6 +186,7 @@ class ProbingCycle:
         self._leg, self._candidate, self._around = leg, 0, 0
         self._targets_W = self._course.targets(feet, normal)
         self._candidates_W = self._course.candidates(self._targets_W[leg], feet, normal)
+        self._failed_W.clear()
         self.motion.on_plane(now)
         self._ask(now, f"{LEGS[leg]} is next")
 
@@ -199,10 +206,17 @@ class ProbingCycle:
 
     def _on_regions(self, answer: FootholdRegions, now: Observation) -> None:
         leg, feet, normal = self._leg, self.reference.p_WF, self.reference.normal_W
+        self._answer = answer
         foothold, settings = answer.foothold_WF[leg], self._settings
-        reserve = settings.around_radius_m if settings.probing and settings.probe_around else 0.0
-        ahead = reserve * np.append(self._course.direction, 0.0)
-        pose = self._planner.support_pose(leg, foothold, feet, normal, self._course.heading, now.com_B, ahead)
+        unfit = self._unfit(answer)
+        if unfit:
+            self._event("rejected", unfit, now, foothold)
+            self._next_candidate(now)
+            return
+        around = settings.around_radius_m if settings.probing and settings.probe_around else 0.0
+        deeper = 0.0 if answer.region_active[leg] else settings.depth_reserve_m  # a map knows how deep it is
+        beyond = around * np.append(self._course.direction, 0.0) - deeper * normal
+        pose = self._planner.support_pose(leg, foothold, feet, normal, self._course.heading, now.com_B, beyond)
         if pose is None:
             self._event("rejected", "out of reach at every base height", now, foothold)
             self._next_candidate(now)
@@ -216,9 +230,21 @@ class ProbingCycle:
             p_WF=self._feet_now(now),
             lifted=self.motion.in_air,
             base_target=self._course.base_target(feet, normal),
+            force_max_n=self._force_max_n,
         )
         self._foothold_W = foothold.copy()
         self._enter(State.OPT, now, "optimising the stride")
+
+    def _unfit(self, answer: FootholdRegions) -> str:
+        """Why the answer's foothold is not worth a step, or "": the map forbids it, or it has been tried."""
+        leg = self._leg
+        if not answer.safe[leg]:
+            return answer.reasons[leg] if answer.reasons else "the map knows no safe cell near it"
+        for failed_W in self._failed_W:
+            apart = float(np.hypot(*(answer.foothold_WF[leg] - failed_W)[:2]))
+            if apart < 0.5 * self._foot_radius_m:
+                return f"{1e3 * apart:.0f} mm from a foothold tried in vain: not tried twice"
+        return ""
 
     def _opt(self, now: Observation) -> None:
         if now.t - self._entered > 2.0:
@@ -243,7 +269,7 @@ class ProbingCycle:
         duration = distance / settings.shift_speed
         if not self.motion.in_air:
             duration = max(settings.shift_s, duration)
-            self._plan_swing(now.t + duration, self._foothold_W, now)
+            self._plan_swing(now.t + duration, self._foothold_W, now, self._region)
         self.motion.shift_base(now, self._support_pose, duration)
         self._balance.begin_shift()
         self._enter(State.MOVE, now, f"base shift for {LEGS[self._leg]}")
@@ -257,7 +283,7 @@ class ProbingCycle:
         ready = self._balance.ready(now, reference, self._leg)
         if motion.in_air:
             if ready and now.t >= reference.base_t1:
-                self._plan_swing(now.t, self._foothold_W, now)
+                self._plan_swing(now.t, self._foothold_W, now, self._region)
                 self._begin_swing(now)
         elif ready and now.t >= reference.swing_t0:
             self._begin_swing(now)
@@ -273,9 +299,9 @@ class ProbingCycle:
         self.motion.lift_off(now, settings.swing_s)
         self._enter(State.DETECT_CONTACT, now, f"{LEGS[self._leg]} lifts off")
 
-    def _plan_swing(self, start: float, to: np.ndarray, now: Observation) -> None:
+    def _plan_swing(self, start: float, to: np.ndarray, now: Observation, region: Region | None = None) -> None:
         settings = self._settings
-        self.motion.plan_swing(self._leg, start, to, now, settings.swing_s, settings.swing_height_m)
+        self.motion.plan_swing(self._leg, start, to, now, settings.swing_s, settings.swing_height_m, region)
         self._touch_z = float(to[2])
 
     def _plan_hop(self, start: float, to: np.ndarray, now: Observation) -> None:
@@ -290,9 +316,11 @@ class ProbingCycle:
         settings, reference, leg = self._settings, self.reference, self._leg
         due = now.t >= reference.swing_t1 - LAND_AHEAD_S
         if now.estimate.contact[leg]:
+            # On its way back the foot knows where the ground is: what it meets before is in its way.
+            back = self.state == State.RETURN_SAFE
             armed = reference.swing_t0 + settings.contact_armed * (reference.swing_t1 - reference.swing_t0)
             # In mid-swing the leg's own inertia looks like a light contact: only a firm one counts as early.
-            if due or (now.t >= armed and now.normal_force(leg) > settings.early_contact_n):
+            if due or (not back and now.t >= armed and now.normal_force(leg) > settings.early_contact_n):
                 self._touched(now)
                 return
         if due:
@@ -320,7 +348,7 @@ class ProbingCycle:
         self._watch.touched(leg, foot)
         self._repeated = False
         if not self._around:
-            self._borne_n = 0.0
+            self._borne_n = self._borne_m = 0.0
         if self.state == State.RETURN_SAFE:
             self.motion.touch_down(now, LegStatus.COLLAPSING if self._watch.sunk[leg] else LegStatus.STANCE)
             self._returned(now, self.reason)
@@ -330,8 +358,16 @@ class ProbingCycle:
             self._accept(now, "contact; probing is off")
         elif self._around > AROUND_POINTS:
             self._accept(now, "all forces were borne here and around")
+        elif self._around and self._drop(foot) > self._settings.around_drop_m:
+            why = f"the ground beside the foothold lies {1e2 * self._drop(foot):.1f} cm lower"
+            self._event("rejected", why, now, foot)
+            self._begin_leg_up(now, why)
         else:
             self._begin_probe(now)
+
+    def _drop(self, foot_W: np.ndarray) -> float:
+        """How much lower a point around it is than the foothold, along the normal [m]."""
+        return float((self._foothold_W - foot_W) @ self.reference.normal_W)
 
     # PROBE, PROBE_AROUND --------------------------------------------------------------------------------
 
@@ -412,8 +448,8 @@ class ProbingCycle:
             self._enter(State.PRE_OPT, now, why)
 
     def _force_held(self, now: Observation, held: Held, moved: float) -> None:
-        if not self._around:
-            self._borne_n = max(held.held_n, self._borne_n)
+        if not self._around and held.held_n > self._borne_n:
+            self._borne_n, self._borne_m = held.held_n, moved
         short = "" if held.enough else ", short of the asked force"
         self._event(
             "force_held",
@@ -442,11 +478,12 @@ class ProbingCycle:
         self._course.settle(leg)
         self.motion.plant(now)
         if self._settings.probing:
-            self.certified_n[leg] = self._borne_n
+            self.certified_n[leg], self.displaced_m[leg] = self._borne_n, self._borne_m
             peak = peak_n(self._press.envelope_W, self.reference.normal_W)
             if self._borne_n < self._settings.held_share * peak:
                 reason = f"{reason}; certified for {self._borne_n:.0f} of {peak:.0f} N only"
-        self._event("accepted", reason, now, foot, held_n=float(self.certified_n[leg]))
+        held_n, moved = float(self.certified_n[leg]), float(self.displaced_m[leg])
+        self._event("accepted", reason, now, foot, held_n=held_n, displacement_m=moved)
         self._enter(State.PRE_OPT, now, f"{LEGS[leg]} stands safely")
 
     # Collapse, LEG_UP, RETURN_SAFE ----------------------------------------------------------------------
@@ -467,6 +504,8 @@ class ProbingCycle:
         """
         leg, settings = self._leg, self._settings
         self._freed = freed
+        if not freed:
+            self._failed_W.append(self._answer.foothold_WF[leg])
         to = self._planner.below_hip(leg, now.pose, settings.leg_up_below_hip_m)
         # Half the way to the place below the hip, or straight up out of a hole, whose edge would catch the foot.
         to[:2] += (1.0 if freed else 0.5) * (now.estimate.p_WF[leg, :2] - to[:2])
@@ -617,6 +656,18 @@ class ProbingCycle:
             self._rest(now, why)
 
     # ----------------------------------------------------------------------------------------------------
+
+    @property
+    def _region(self) -> Region | None:
+        """Where the map lets the moving foot touch down; None is the whole plane."""
+        answer, leg = self._answer, self._leg
+        return Region(answer.region_a[leg], answer.region_b[leg]) if answer.region_active[leg] else None
+
+    @property
+    def _force_max_n(self) -> np.ndarray:
+        """(4,) what each foothold is certified for [N]; 0, no cap, under test, in the air or sinking."""
+        capped = self.motion.trusted & self._settings.cap_forces
+        return np.where(capped, self.certified_n, 0.0)
 
     def _footing(self, now: Observation) -> np.ndarray:
         """(4, 3) the feet, with one that is in the air at its safe foothold."""

@@ -6,6 +6,8 @@ import numpy as np
 
 from surefoot.bus.messages import MotionReference
 from surefoot.components.gait.swing_spline import SwingSpline
+from surefoot.components.ocp.certified_load import normal_force_max
+from surefoot.components.ocp.foot_placement import LANDING_SHARE
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotations import matrices_of_rpy
@@ -41,6 +43,7 @@ class MotionSampler:
         force_W[..., 2] = contact * (self._weight / contact.sum(axis=1))[:, None]
         supported = (times >= reference.support_t0) & (times < reference.support_t1)
         probe_leg, probe_force_W = self._probe(reference, times, contact)
+        region_a, region_b, region_active = self._region(reference, times)
         return NodeReference(
             t=times,
             dt=self._dt,
@@ -51,14 +54,15 @@ class MotionSampler:
             p_WF=p_WF,
             v_WF=v_WF,
             force_W=force_W,
+            force_max_n=np.tile(normal_force_max(reference.force_max_n, self._weight), (nodes, 1)),
             normal_W=reference.normal_W,
             support_leg=np.where(supported, reference.support_leg, -1),
             support_margin_m=reference.support_margin_m,
             probe_leg=probe_leg,
             probe_force_W=probe_force_W,
-            region_a=_NO_REGION_A,
-            region_b=_NO_REGION_B,
-            region_active=np.zeros((nodes, 4), bool),
+            region_a=region_a,
+            region_b=region_b,
+            region_active=region_active,
         )
 
     @staticmethod
@@ -75,6 +79,19 @@ class MotionSampler:
         if flying.any():
             p_WF[flying, leg], v_WF[flying, leg], _ = SwingSpline(reference).sample(times[flying])
         p_WF[landed, leg] = reference.swing_to
+
+    @staticmethod
+    def _region(reference: MotionReference, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Eq. (4) of a swing leg: from the last part of its swing on, until the state machine has seen it land."""
+        active = np.zeros((len(times), 4), bool)
+        leg = reference.swing_leg
+        if leg < 0 or not reference.region_active:
+            return _NO_REGION_A, _NO_REGION_B, active
+        a, b = _NO_REGION_A.copy(), _NO_REGION_B.copy()
+        a[leg], b[leg] = reference.region_a, reference.region_b
+        last_s = LANDING_SHARE * (reference.swing_t1 - reference.swing_t0)
+        active[:, leg] = times >= reference.swing_t1 - last_s
+        return a, b, active
 
     @staticmethod
     def _base(reference: MotionReference, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

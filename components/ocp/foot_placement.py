@@ -8,6 +8,9 @@ from surefoot.components.ocp.quadratic_model import QuadraticModel
 from surefoot.components.ocp.relaxed_barrier import RelaxedBarrier
 from surefoot.components.ocp.term import Nodes
 
+LANDING_SHARE = 0.2
+"""Eq. (4) acts over this last share of a swing too: the foot comes down inside its region, not towards it."""
+
 
 class FootPlacement:
     """A_i p_i + b_i >= 0 [m] where a region is active; Table I: mu 0.1, delta 0.005 m."""

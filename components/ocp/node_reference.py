@@ -18,6 +18,7 @@ class NodeReference:
         q: (N+1, 4, 3) joints by inverse kinematics [rad].
         p_WF: (N+1, 4, 3) [m], v_WF: (N+1, 4, 3) feet [m/s].
         force_W: (N+1, 4, 3) [N].
+        force_max_n: (N+1, 4) largest normal force that each foothold is to bear [N]; infinite: the robot's limit.
         normal_W: (3,) surface normal.
         support_leg: (N+1,) leg left out of the polygon of eq. (5), -1 where it is off.
         support_margin_m: alpha of eq. (5).
@@ -34,6 +35,7 @@ class NodeReference:
     p_WF: np.ndarray
     v_WF: np.ndarray
     force_W: np.ndarray
+    force_max_n: np.ndarray
     normal_W: np.ndarray
     support_leg: np.ndarray
     support_margin_m: float

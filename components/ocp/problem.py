@@ -210,7 +210,8 @@ class Problem:
         """Forces clipped to the limits and the cone; the defects of the next iteration absorb the change."""
         normal, settings = reference.normal_W, self.settings
         along = force_W @ normal
-        clipped = np.clip(along, _FORCE_FLOOR_N, settings.force_max_n)
+        most = np.minimum(settings.force_max_n, reference.force_max_n[: self.N])
+        clipped = np.clip(along, _FORCE_FLOOR_N, most)
         tangential = force_W - along[..., None] * normal
         length = np.sqrt((tangential**2).sum(axis=-1))
         shrink = np.minimum(1.0, settings.friction * clipped / np.maximum(length, 1e-9))

@@ -6,6 +6,8 @@ import numpy as np
 
 from surefoot.bus.messages import MotionReference, PlanRequest
 from surefoot.components.gait.swing_spline import SwingSpline
+from surefoot.components.ocp.certified_load import normal_force_max
+from surefoot.components.ocp.foot_placement import LANDING_SHARE
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotations import matrices_of_rpy
@@ -34,6 +36,7 @@ class Stride:
         contact = np.ones((nodes, 4), bool)
         p_WF, v_WF = np.tile(request.p_WF, (nodes, 1, 1)), np.zeros((nodes, 4, 3))
         region_active = np.zeros((nodes, 4), bool)
+        certified_n = np.tile(request.force_max_n, (nodes, 1))
         for place, leg in enumerate(request.leg_order):
             landing = self.touch_down(place)
             lifted = request.lifted and place == 0
@@ -53,7 +56,9 @@ class Stride:
             contact[in_air, leg] = False
             p_WF[in_air, leg], v_WF[in_air, leg], _ = SwingSpline(swing).sample(t[in_air])
             p_WF[after, leg] = request.target_WF[leg]
-            region_active[after, leg] = request.region_active[leg]
+            lands = t > landing - LANDING_SHARE * settings.swing_s - 5e-10
+            certified_n[after, leg] = 0.0  # nobody has tried the new foothold yet
+            region_active[lands, leg] = request.region_active[leg]
         share = (t / t[-1])[:, None]
         pose = base_now + share * (request.base_target - base_now)
         R_WB = matrices_of_rpy(pose[:, 3:])
@@ -70,6 +75,7 @@ class Stride:
             p_WF=p_WF,
             v_WF=v_WF,
             force_W=force_W,
+            force_max_n=normal_force_max(certified_n, self._weight),
             normal_W=request.normal_W,
             support_leg=off,
             support_margin_m=0.0,

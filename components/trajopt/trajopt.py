@@ -76,6 +76,10 @@ class Trajopt(Component):
 
     @staticmethod
     def _footholds(p_WF: np.ndarray, request: PlanRequest) -> np.ndarray:
-        """Where the optimised feet stand at the stride's end; blind, the targets themselves (Sec. II-B.5)."""
-        adapted = p_WF[-1]
+        """Where the optimised feet stand at the stride's end; blind, the targets themselves (Sec. II-B.5).
+
+        A region bounds where a foot stands in the plane. Its height is the target's: that of the patch of ground.
+        """
+        adapted = p_WF[-1].copy()
+        adapted[:, 2] = request.target_WF[:, 2]
         return np.where(request.region_active[:, None], adapted, request.target_WF)

@@ -29,6 +29,7 @@ class Puppet:
         sunk: (4,) how far the ground under each foot has given way [m].
         tilt: roll that the estimate claims [rad].
         weak: share of the asked force that the ground really takes.
+        map: what a request's answer says otherwise than "blind": fields of `FootholdRegions`.
         unanswered: of "regions" and "plan", the questions that nobody answers.
     """
 
@@ -41,6 +42,7 @@ class Puppet:
         self.ground_z, self.sunk = np.full(4, FOOT_Z), np.zeros(4)
         self.tilt, self.weak, self.t = 0.0, 1.0, 0.0
         self.events, self.unanswered = [], ()
+        self.map = lambda request: {}
         self.cycle = ProbingCycle(ROBOT, self.settings, self._report)
         self.cycle.stand_up(self.observe())
         if forward:
@@ -91,10 +93,9 @@ class Puppet:
         questions = self.cycle.questions
         if questions.foothold_request is not None and "regions" not in self.unanswered:
             request, questions.foothold_request = questions.foothold_request, None
-            answer = FootholdRegions(
-                t=self.t, valid=True, id=request.id, foothold_WF=request.target_WF, safe=np.ones(4, bool)
-            )
-            self.cycle.regions(answer, now)
+            blind = {"foothold_WF": request.target_WF, "safe": np.ones(4, bool)}
+            figures = blind | self.map(request)
+            self.cycle.regions(FootholdRegions(t=self.t, valid=True, id=request.id, **figures), now)
         if questions.plan_request is not None and "plan" not in self.unanswered:
             request, questions.plan_request = questions.plan_request, None
             envelope = np.linspace(60.0, 100.0, 6)[:, None] * UP

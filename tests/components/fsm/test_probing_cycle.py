@@ -248,3 +248,44 @@ def test_an_unanswered_question_is_asked_again(question, topic):
     puppet.unanswered = (question,)
     puppet.run(2.2)
     assert any(f"no answer on {topic}" in event[1] for event in puppet.kinds("transition"))
+
+
+def test_a_foothold_beside_which_the_ground_drops_is_on_an_edge():
+    puppet = Puppet(Fsm())
+    before = puppet.feet.copy()
+    puppet.reach("PROBE_AROUND")
+    puppet.ground_z[RL] -= 0.025
+    assert puppet.run(2.0, lambda: puppet.cycle.state == "LEG_UP")
+    rejected = puppet.kinds("rejected")
+    assert len(rejected) == 1 and "2.5 cm lower" in rejected[0][1] and not puppet.kinds("collapse")
+    puppet.reach("SEND")
+    assert puppet.cycle.counters == {"candidate": 1, "around": 0}
+    np.testing.assert_array_equal(puppet.cycle.reference.p_WF[FR], before[FR])
+
+
+def test_a_small_step_beside_the_foothold_is_probed():
+    puppet = Puppet(Fsm())
+    puppet.reach("PROBE_AROUND")
+    puppet.ground_z[RL] -= 0.015
+    assert puppet.run(2.0, lambda: puppet.cycle.state == "PROBE")
+    assert puppet.cycle.counters["around"] == 1 and not puppet.kinds("rejected")
+
+
+def test_what_a_foot_meets_on_its_way_back_is_not_its_foothold():
+    puppet = Puppet()
+    puppet.reach("DETECT_CONTACT")
+    puppet.run(0.2)
+    puppet.cycle.stop(puppet.observe(), "commanded stop")
+    puppet.ground_z[RL] = puppet.feet[RL, 2] + 0.2  # it touches something all the way
+    puppet.run(puppet.settings.swing_s - 0.05)
+    assert puppet.cycle.state == "RETURN_SAFE"
+    puppet.reach("STOPPED")
+
+
+def test_low_ground_ahead_lowers_the_base():
+    heights = []
+    for reserve in (0.0, 0.06):
+        puppet = Puppet(Fsm(probe_around=False, depth_reserve_m=reserve))
+        puppet.reach("DETECT_CONTACT")
+        heights.append(puppet.cycle.reference.base_to[2])
+    assert heights[1] < heights[0] - 0.03

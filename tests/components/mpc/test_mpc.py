@@ -54,6 +54,60 @@ def test_a_swing_is_sampled_on_the_nodes_and_its_landing_is_not_counted_on():
     np.testing.assert_allclose(nodes.p_WB[:, None] + LEGS.position(nodes.q), nodes.p_WF, atol=1e-9)
 
 
+def square(centre_W, half_m):
+    """Half-spaces A p + b >= 0 of a square about a point (3,), sides along the world's axes."""
+    A = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
+    return A, half_m - A @ centre_W
+
+
+def test_a_region_acts_on_the_swing_leg_from_the_end_of_its_swing_on():
+    A, b = square(FEET[1] + [0.1, 0.0, 0.0], 0.03)
+    swing = replace(swinging(), region_a=A, region_b=b, region_active=True)
+    nodes = MotionSampler(ROBOT, 67, 0.015).sample(swing, 0.0)
+    np.testing.assert_array_equal(nodes.region_active[:, 1], nodes.t >= 0.9 - 0.2 * 0.6)
+    assert not nodes.region_active[:, [0, 2, 3]].any()
+    np.testing.assert_array_equal(nodes.region_a[1], A)
+    np.testing.assert_array_equal(nodes.region_b[1], b)
+    late = MotionSampler(ROBOT, 67, 0.015).sample(replace(swing, swing_t1=1.03), 1.0)
+    assert late.region_active[:, 1].all()
+    without = MotionSampler(ROBOT, 67, 0.015).sample(replace(swing, region_active=False), 0.0)
+    assert not without.region_active.any() and not without.region_a.any()
+    # What one sample writes must not leak into the next one's "no region".
+    assert not MotionSampler(ROBOT, 67, 0.015).sample(STAND, 0.0).region_a.any()
+
+
+def test_a_swing_to_a_point_outside_its_region_is_planned_to_come_down_inside():
+    A, b = square(FEET[1] + [0.05, 0.0, 0.0], 0.03)  # the swing aims 2 cm beyond its front edge
+    ends = []
+    for region in (False, True):
+        loop = Loop()
+        swing = replace(swinging(), region_a=A, region_b=b, region_active=region)
+        for tick in range(25):
+            policy = loop.tick(0.01 * tick, swing)
+        foot = policy.x[-2, 6:9] + LEGS.position(policy.x[-2, 12:].reshape(4, 3))[1]
+        ends.append((A @ foot + b).min())
+    assert ends[0] < -0.01 and ends[1] > ends[0] + 0.01
+
+
+def test_certified_loads_cap_the_nodes_and_unknown_ones_do_not():
+    sample = MotionSampler(ROBOT, 67, 0.015).sample
+    nodes = sample(replace(STAND, force_max_n=np.array([130.0, 0.0, 30.0, 119.0])), 0.0)
+    np.testing.assert_allclose(nodes.force_max_n, np.tile([130.0, np.inf, 0.45 * WEIGHT, 119.0], (68, 1)))
+    assert np.isinf(sample(STAND, 0.0).force_max_n).all()
+
+
+def test_the_policy_loads_no_foot_above_its_certificate():
+    lean = replace(STAND, base_to=POSE + [0.18, 0.10, 0.0, 0.0, 0.0, 0.0])  # towards the front left foot
+    most = []
+    for certified in (0.0, 115.0):
+        loop = Loop()
+        force_max_n = np.array([certified, 0.0, 0.0, 0.0])
+        for tick in range(30):
+            policy = loop.tick(0.01 * tick, replace(lean, force_max_n=force_max_n))
+        most.append(policy.u[:60, 2].max())
+    assert most[0] > 125.0 and most[1] < 116.0
+
+
 def test_probing_forces_follow_each_other_with_a_blend():
     forces = np.array([[0.0, 0.0, 20.0]] + [[0.0, 0.0, 40.0 + 10.0 * i] for i in range(6)])
     reference = replace(

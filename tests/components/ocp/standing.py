@@ -27,6 +27,7 @@ def standing(N=67, dt=0.015, base=(0.0, 0.0, 0.4)):
         p_WF=np.tile(p_WF, (nodes, 1, 1)),
         v_WF=np.zeros((nodes, 4, 3)),
         force_W=np.tile([0.0, 0.0, WEIGHT / 4], (nodes, 4, 1)),
+        force_max_n=np.full((nodes, 4), np.inf),
         normal_W=np.array([0.0, 0.0, 1.0]),
         support_leg=np.full(nodes, -1),
         support_margin_m=0.04,

@@ -7,6 +7,7 @@ import pinocchio as pin
 import pytest
 from standing import LEGS, ROBOT, WEIGHT, standing
 
+from surefoot.components.ocp.certified_load import normal_force_max
 from surefoot.components.ocp.layout import JOINTS, MOMENTUM, POSITION, ROTATION
 from surefoot.components.ocp.problem import Problem
 from surefoot.components.ocp.quadratic_model import QuadraticModel
@@ -30,6 +31,7 @@ def busy_nodes():
     reference.probe_leg[:] = 2
     reference.probe_force_W[:] = [3.0, -2.0, 90.0]
     reference.region_active[:] = True
+    reference.force_max_n[:] = [np.inf, 70.0, 58.0, 90.0]  # leg 2 is over its cap, the others are not
     reference.region_a[:] = rng.normal(size=(4, 4, 3))
     reference.region_b[:] = 0.02 - (reference.region_a @ reference.p_WF[0][..., None])[..., 0]
     problem = Problem(Ocp(), ROBOT, N)
@@ -97,6 +99,21 @@ def test_gradients_are_those_of_the_value(term):
         np.testing.assert_allclose(g[node], slope, atol=TOLERANCE * max(1.0, np.abs(slope).max()))
 
 
+def test_a_cap_acts_on_its_own_foot_only():
+    limits = next(term for term in PROBLEM.constraints if term.name == "force_limits")
+
+    def slope(caps):
+        reference = replace(NODES.reference, force_max_n=np.tile(caps, (N + 1, 1)))
+        model = QuadraticModel(StageQP(N, 24, 12))
+        limits.add(Nodes(NODES.iterate, NODES.linear, reference), model)
+        return model.u_slope
+
+    change = slope([np.inf, np.inf, 40.0, np.inf]) - slope([np.inf] * 4)
+    assert (change[:, 2, 2] > 50.0).all() and not change[:, [0, 1, 3]].any()
+    # A foothold that bears more than the robot may press changes nothing.
+    np.testing.assert_array_equal(slope([500.0] * 4), slope([np.inf] * 4))
+
+
 def turning_left_out(node):
     """(J' - 1) Q e: by design the tracking cost takes the Jacobian J of its rotation error e as one."""
     error = NODES.reference.R_WB[node].T @ NODES.iterate.R_WB[node]
@@ -124,6 +141,37 @@ def shifted_into_triangle(leg):
     reference.p_WB[:, :2] += away
     reference.q[:] = LEGS.inverse(reference.p_WF - reference.p_WB[:, None])[0]
     return reference, replace(measured, p_WB=reference.p_WB[0].copy(), q=reference.q[0].copy())
+
+
+def on_three_feet():
+    """Standing with the front right leg in the air, the base inside the triangle of the others."""
+    reference, measured = shifted_into_triangle(1)
+    reference.contact[:, 1] = False
+    reference.force_W = reference.contact[..., None] * [0.0, 0.0, WEIGHT / 3]
+    return reference, measured
+
+
+def test_a_foot_on_a_capped_foothold_bears_what_that_is_certified_for():
+    reference, measured = on_three_feet()
+    problem = Problem(Ocp(), ROBOT, 67)
+    free, _ = problem.converge(reference, measured, 15, 1e-4)
+    loaded = int(free.iterate.force_W[10, :, 2].argmax())
+    cap = free.iterate.force_W[10, loaded, 2] - 4.0
+    reference.force_max_n[:, loaded] = cap
+    held, _ = problem.converge(reference, measured, 15, 1e-4)
+    assert held.iterate.force_W[..., loaded, 2].max() < cap + 0.5
+    # Only a base that moves can take a load off at once: it gives way by 2 cm and comes back.
+    moved = np.linalg.norm(held.iterate.p_WB - measured.p_WB, axis=1)
+    assert 0.005 < moved.max() < 0.03 and moved[-1] < 0.005
+
+
+@pytest.mark.parametrize("feet", [4, 3])
+def test_the_lowest_caps_leave_a_robot_that_stands(feet):
+    reference, measured = standing() if feet == 4 else on_three_feet()
+    reference.force_max_n[:] = normal_force_max(np.full(4, 30.0), WEIGHT)
+    step, _ = Problem(Ocp(), ROBOT, 67).converge(reference, measured, 15, 1e-4)
+    np.testing.assert_allclose(step.iterate.force_W[10:40].sum(axis=1)[:, 2], WEIGHT, rtol=0.02)
+    assert np.abs(step.iterate.p_WB - measured.p_WB).max() < 0.01
 
 
 @pytest.mark.parametrize("leg", range(4))

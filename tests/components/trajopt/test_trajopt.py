@@ -10,8 +10,10 @@ from surefoot.bus.codec import check
 from surefoot.bus.messages import PlanRequest, StateEstimate
 from surefoot.components.component import Inbox, Outbox
 from surefoot.components.trajopt.envelope import grf_envelope
+from surefoot.components.trajopt.stride import Stride
 from surefoot.components.trajopt.trajopt import Trajopt
 from surefoot.config.deployment import Deployment
+from surefoot.config.fsm import Fsm
 from surefoot.config.robot import GRAVITY
 from surefoot.config.trajopt import Trajopt as Settings
 
@@ -84,11 +86,53 @@ def test_the_plan_moves_one_leg_after_the_other_and_obeys_newton(first):
     np.testing.assert_allclose(acceleration, expected, atol=1e-9)
 
 
+def test_a_certified_foothold_bears_no_more_until_its_leg_swings():
+    def front_left(**settings):
+        force = plan(3, replace(REQUEST, force_max_n=certified), **settings).u[:, 2]
+        return force[: round(2.35 / 0.05)].max()  # it is the third to swing
+
+    certified = np.zeros(4)
+    cap = 0.45 * WEIGHT
+    assert front_left() > cap + 3.0
+    certified[0] = cap
+    assert front_left() < cap + 0.5
+
+
+def test_nobody_has_tried_the_foothold_that_a_leg_swings_to():
+    certified = np.array([130.0, 0.0, 120.0, 60.0])
+    request = replace(REQUEST, force_max_n=certified, leg_order=CRAWL)
+    limits = Stride(ROBOT, Settings(), Fsm()).sample(request, np.concatenate([BASE, np.zeros(3)])).force_max_n
+    t = 0.05 * np.arange(81)
+    for place, leg in enumerate(CRAWL):
+        now = max(certified[leg], 0.45 * WEIGHT) if certified[leg] else np.inf
+        before, after = t < place + 0.35 - 1e-9, t > place + 1.0 + 1e-9
+        np.testing.assert_allclose(limits[before, leg], now)
+        assert np.isinf(limits[after, leg]).all()
+
+
 def test_blind_the_footholds_are_the_targets_and_the_base_arrives():
     result = plan(0)
     np.testing.assert_array_equal(result.footholds_WF, REQUEST.target_WF)
     assert result.x[-1, 6] == pytest.approx(0.10, abs=0.03)
     assert result.x.shape == (81, 24) and result.u.shape == (80, 24)
+
+
+def test_adapted_footholds_are_in_their_regions_at_the_height_of_the_ground_there():
+    ground = np.array([[0.0, 0.0, 0.03], [0.0, 0.0, -0.02], [0.0, 0.0, 0.01], [0.0, 0.0, 0.0]])
+    target = FEET + FORWARD + ground
+    A = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
+    centre = target - [0.03, 0.0, 0.0]
+    b = 0.02 - np.array([A @ point for point in centre])
+    active = np.array([True, False, True, True])
+    request = replace(REQUEST, target_WF=target, region_a=np.tile(A, (4, 1, 1)), region_b=b, region_active=active)
+    result = plan(0, request)
+    assert result.status == "ok"
+    np.testing.assert_array_equal(result.footholds_WF[:, 2], target[:, 2])
+    np.testing.assert_array_equal(result.footholds_WF[1], target[1])
+    # The target is 1 cm outside its region; the foot that moves first is the one whose foothold is used.
+    leg = CRAWL[0]
+    assert (A @ target[leg] + b[leg]).min() == pytest.approx(-0.01)
+    assert (A @ result.footholds_WF[leg] + b[leg]).min() > -0.001
 
 
 def test_without_an_estimate_the_plan_says_so():
