@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import tan
 from typing import Annotated
 
 from surefoot.config.quantities import Share
-from surefoot.config.typed_toml import Within
+from surefoot.config.typed_toml import ConfigError, Within
 
 Length = Annotated[float, Within(0.1, 20.0)]
 Tolerance = Annotated[float, Within(0.001, 0.5)]  # 0 would be met by no measured ground
@@ -37,3 +38,12 @@ class ElevationMap:
     length_m: Length = 2.4  # along the world's x axis
     width_m: Length = 1.6  # along y
     vfa: Vfa = Vfa()
+
+    def __post_init__(self) -> None:
+        rise = self.cell_m * tan(self.vfa.slope_max)
+        if rise > self.vfa.edge_max_m:
+            raise ConfigError(
+                f"vfa.edge_max_m = {self.vfa.edge_max_m}: ground of vfa.slope_max = {self.vfa.slope_max} rises "
+                f"{rise:.3f} m from cell to cell (cell_m = {self.cell_m}) and would be all edges; raise it, or "
+                "lower one of the two"
+            )

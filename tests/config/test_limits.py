@@ -158,6 +158,10 @@ OUTSIDE = {
     "terrain.planks.board_mass=0": "0.1 to 100",
     "terrain.planks.frame_height_m=0": "0.02 to 5",
     "run.epoch_s=-1": "0 to 1e+10",
+    "elevation_map.vfa.age_max_s=0": "1 to 100000",
+    "elevation_map.vfa.std_max_m=0": "0.001 to 0.5",
+    "elevation_map.vfa.disc_gaps_max=0.6": "0 to 0.5",
+    "elevation_map.vfa.slope_max=1.6": "0.05 to 1.2",
 }
 
 
@@ -213,6 +217,7 @@ TOGETHER = {
     "fsm.base_height_min_m=0.45": r"^fsm\.base_height_min_m = 0\.45: aliengo's hips stand at 0\.400 m",
     "fsm.leg_up_below_hip_m=0.45": r"^fsm\.leg_up_below_hip_m = 0\.45: aliengo's hips",
     "terrain.kind=planks terrain.planks.run_up_m=0.5": r"^terrain\.planks\.run_up_m = 0\.5: .* 0\.58 m",
+    "elevation_map.cell_m=0.06": r"^elevation_map: vfa\.edge_max_m = 0\.03: .* rises 0\.035 m .*cell_m = 0\.06",
     "robot=spot": r"^robot 'spot' is not described; known: aliengo",
 }
 

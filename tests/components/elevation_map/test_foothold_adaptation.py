@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from made_up_ground import CELL, NOMINAL_BF, RADIUS, ROBOT, Ground, standing_at
+from made_up_ground import CELL, RADIUS, ROBOT, Ground, standing_at
 
 from surefoot.bus.codec import decode, encode
 from surefoot.bus.messages import FootholdRegions
@@ -130,6 +130,14 @@ def test_of_equally_near_cells_the_first_along_x_and_y():
     np.testing.assert_allclose(ground.ask(**AT).foothold_WF[0, :2], [0.2, 0.14], atol=1e-9)
 
 
+def test_no_rounding_chooses_between_equally_near_cells():
+    for k in range(-12, 13):
+        x, y = CELL * k, CELL * (k + 3)
+        ground = Ground()
+        ground.collapsed[ground.cell(x, y)] = 30.0
+        np.testing.assert_allclose(ground.ask(**standing_at(x, y)).foothold_WF[0, :2], [x - 0.06, y], atol=1e-9)
+
+
 def test_a_safe_target_is_kept_between_the_cells_centres():
     asked = standing_at(0.2077, 0.1934)
     answer = Ground(lambda x, y: 0.1 * x).ask(**asked)
@@ -224,15 +232,29 @@ def test_thresholds_are_the_settings():
     assert not step.ask(adaptation=adaptation, **AT).heightmap_unsafe[0].any()
 
 
-def test_a_foot_in_the_air_far_away_asks_for_no_map_without_end():
-    """The patch is bounded by what legs can span, wherever the request says the feet are."""
-    sizes = []
+def sizes_asked(asked):
+    """(4, 2) half sizes in cells of the patches that a request asks for."""
+    sizes, ground = [], Ground()
+    whole = ground.cut
 
     def cut(p_xy, half_x, half_y):
         sizes.append((half_x, half_y))
-        return Ground(half=5).cut(p_xy, half_x, half_y)
+        return whole(p_xy, half_x, half_y)
 
-    ground = Ground()
     ground.cut = cut
-    ground.ask(targets=AT["targets"], feet=NOMINAL_BF + [1e6, 0.0, 0.0], base=AT["base"])
-    assert len(sizes) == 4 and max(max(size) for size in sizes) < 80
+    ground.ask(**asked)
+    return np.array(sizes)
+
+
+def test_the_patch_holds_the_way_of_the_foot_and_the_leg_above_every_cell():
+    near, far = sizes_asked(standing_at(0.2, 0.2, step=0.02)), sizes_asked(standing_at(0.2, 0.2, step=0.5))
+    around = 7 + 3  # the heightmap, and what a foot touches with its clearance
+    assert near.shape == (4, 2) and near.min() >= around + 0.25 / CELL
+    assert far[:, 0].min() >= around + 0.5 / CELL
+    np.testing.assert_array_equal(far[:, 1], near[:, 1])
+
+
+def test_the_patch_is_bounded_wherever_the_feet_are_said_to_be():
+    asked = standing_at(0.2, 0.2)
+    asked["feet"] = asked["feet"] + [1e6, -1e6, 0.0]
+    assert sizes_asked(asked).max() < 80

@@ -54,6 +54,20 @@ def test_a_wall_behind_is_met_by_the_leg_that_leans_over_it(height):
     assert surely >= 2 and never >= 2
 
 
+@pytest.mark.parametrize(("height", "met"), [(0.25, False), (0.36, True)])
+def test_a_wall_under_a_thigh_that_reaches_back_is_met_if_it_is_high_enough(height, met):
+    """Foot, calf and the whole swing are behind the wall; only the thigh goes forward over it to its axis."""
+    at = 0.16
+    found = flagged(wall(at, height).ask(**standing_at(0.2, 0.2, step=0.14)), Unsafe.LEG)[:, 7]
+    for i in (0, 1):
+        foot, thigh = np.array([0.2 + CELL * (i - 7), RADIUS]), np.array([0.2, RADIUS - NOMINAL_BF[0, 2]])
+        knee = side_view(*foot, *thigh)
+        assert gap_to_wall(foot, knee, 0.0, at, height) > 0.0104 + CLEARANCE + OFF_CENTRE
+        gap = gap_to_wall(knee, thigh, 0.0, at, height) - 0.0215
+        assert gap < CLEARANCE - OFF_CENTRE if met else gap > CLEARANCE + OFF_CENTRE
+        assert found[i] == met
+
+
 @pytest.mark.parametrize(("height", "met"), [(0.04, False), (0.075, True), (0.2, True)])
 def test_a_wall_on_the_way_is_met_if_it_is_higher_than_the_swing_clears(height, met):
     """From 20 cm ahead the foot goes back, 8 cm high, over a wall half way; the calf is never near it."""

@@ -55,6 +55,7 @@ def test_of_equally_large_ones_the_squarest_and_then_the_first():
     safe[7:9, 2:8] = True  # 2 x 6
     safe[7:10, 4:8] = True  # 3 x 4, which holds as many
     assert SafeRectangle.around(safe, (7, 7)) == SafeRectangle((7, 4), (9, 7))
+    assert SafeRectangle.around(safe.T, (7, 7)) == SafeRectangle((4, 7), (7, 9))
     square = np.zeros((15, 15), bool)
     square[6:9, 7] = square[6:9, 8] = True
     square[7:9, 6:9] = True  # 2 x 3 along y from x = 7, and 3 x 2 along x from 6
