@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from surefoot.bus import messages as m
 from surefoot.bus.message import Message
+from surefoot.config.depth_camera import DepthCamera
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,7 @@ TOPICS = {
     topic.key: topic
     for topic in (
         Topic("hw/state", m.HardwareState, "io", CYCLE_HZ, 0.040),
-        Topic("hw/depth", m.DepthFrame, "io", stale_after_s=0.5),
+        Topic("hw/depth", m.DepthFrame, "io", DepthCamera.rate_hz, 0.5),
         Topic("joint/command", m.JointCommand, "wbc", CYCLE_HZ / _WBC_EVERY, 0.040),
         Topic("state/estimate", m.StateEstimate, "estimator", CYCLE_HZ, 0.040),
         Topic("fsm/reference", m.MotionReference, "fsm", _FSM_HZ, 0.100),

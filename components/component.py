@@ -93,6 +93,7 @@ class Component:
     """Base of every component. Class attributes say its name, inputs and outputs; `bus.topics` its timing.
 
     Attributes:
+        complete: streams of which it needs every message; of others the newest is enough on the monotonic clock.
         trouble: in words why the last step could not do its work; empty when it could. The process's status
             tells it.
     """
@@ -101,6 +102,7 @@ class Component:
     inputs: ClassVar[tuple[str, ...]] = ()
     outputs: ClassVar[tuple[str, ...]] = ()
 
+    complete: tuple[str, ...] = ()
     trouble: str = ""
 
     def __init__(self, deployment: Deployment):

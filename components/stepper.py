@@ -41,7 +41,8 @@ class Stepper:
             simulated: time waits for every message; on the monotonic clock a stream's newest is enough.
         """
         self.component = component
-        self.buffers = TopicBuffers(component.inputs, None if simulated else process.trigger)
+        trigger = None if simulated else process.trigger
+        self.buffers = TopicBuffers(component.inputs, trigger, component.complete)
         self.outbox = Outbox(component.outputs, self._send, boot)
         self.health = Health(component, session, self.buffers, process, boot)
         self._session = session

@@ -43,32 +43,33 @@ class TopicBuffers:
 
     With simulated time every message has its place, by its sequence number: what comes twice or out of place
     is another publisher's. On the monotonic clock the newest counts: of a stream that does not release the
-    reader nothing else is even looked at, and what falls behind is dropped.
+    reader nothing else is even looked at, unless it asks for all, and what falls behind is dropped.
 
     Attributes:
         bad: messages dropped: malformed, or not of the topic's writer.
         last_error: what was wrong with the latest of them, by topic.
     """
 
-    def __init__(self, keys: tuple[str, ...], trigger: str | None = None):
+    def __init__(self, keys: tuple[str, ...], trigger: str | None = None, complete: tuple[str, ...] = ()):
         """For the topics `keys`.
 
         Args:
             keys: the topics read.
             trigger: None with simulated time; on the monotonic clock the topic whose messages release the
                 reader, or "".
+            complete: streams of which every message is wanted.
         """
         self.bad = 0
         self.last_error = ""
         self._arrived = Condition()
         self._topics = {key: _Topic(key) for key in keys}
-        self._trigger = trigger
+        self._trigger, self._complete = trigger, complete
         self._newest: dict[str, Callable[[], bytes | None]] = {}
 
     def connect(self, session: Session) -> None:
         """Begin to listen."""
         for key in self._topics:
-            if self._trigger in (None, key) or not TOPICS[key].rate_hz:
+            if self._trigger in (None, key) or key in self._complete or not TOPICS[key].rate_hz:
                 session.subscribe(key, self.put)
             else:
                 self._newest[key] = session.newest(key)

@@ -17,7 +17,7 @@ class DepthCamera:
     """Pose, image and noise of the camera; it looks forward and down from the front of the trunk."""
 
     p_B: tuple[Offset, Offset, Offset] = (0.33, 0.0, 0.02)  # optical centre in the trunk [m]
-    pitch: Annotated[float, Within(-1.57, 1.57)] = 0.80  # optical axis below the trunk's x axis [rad]
+    pitch: Annotated[float, Within(-1.57, 1.57)] = 0.90  # optical axis below the trunk's x axis [rad]
     fov_x: Angle = 1.52  # horizontal, of a common stereo camera [rad]
     fov_y: Angle = 1.01  # vertical [rad]
     columns: Annotated[int, Within(2, 640)] = 80
@@ -29,6 +29,9 @@ class DepthCamera:
         0.002  # standard deviation of the depth at 1 m; grows with its square
     )
     dropout: Annotated[float, Within(0.0, 1.0)] = 0.02  # share of pixels without a value
+    slit_m: Annotated[float, Within(0.0, 0.1)] = (
+        0.013  # matching windows bridge slits up to this at least; where two of 5 mm meet they are that wide [m]
+    )
 
     def __post_init__(self) -> None:
         ordered(self, "range_min_m", "range_max_m", "no pixel would ever have a value")

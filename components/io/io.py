@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from surefoot.bus.messages import HardwareState
+from surefoot.bus.messages import DepthFrame, HardwareState
 from surefoot.bus.topics import CYCLE_HZ
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.config.deployment import Deployment
@@ -28,7 +28,7 @@ class Io(Component):
 
     name: ClassVar[str] = "io"
     inputs: ClassVar[tuple[str, ...]] = ("joint/command",)
-    outputs: ClassVar[tuple[str, ...]] = ("hw/state", "sim/truth")
+    outputs: ClassVar[tuple[str, ...]] = ("hw/state", "hw/depth", "sim/truth")
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
@@ -55,6 +55,19 @@ class Io(Component):
                 gate=self._gate.reason,
             ),
         )
+        image = self.robot.depth()
+        if image is not None:
+            outbox.publish(
+                "hw/depth",
+                DepthFrame(
+                    t=t,
+                    valid=True,
+                    p_BC=image.p_BC,
+                    quat_BC=image.quat_BC,
+                    fov=image.fov,
+                    depth_m=image.depth_m,
+                ),
+            )
         truth = self.robot.truth()
         if truth is not None:
             outbox.publish("sim/truth", truth)

@@ -12,9 +12,10 @@ from surefoot.bus.topics import CYCLE_HZ
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import LEGS
 from surefoot.hw.errors import HardwareFault
+from surefoot.hw.mujoco.depth_camera import DepthCamera
 from surefoot.hw.mujoco.plant import draw_plant, stream
 from surefoot.hw.mujoco.scene import PHYSICS_DT, build_scene
-from surefoot.hw.robot_interface import MotorLaw, Sensors, damping_law
+from surefoot.hw.robot_interface import DepthImage, MotorLaw, Sensors, damping_law
 
 STEPS_PER_CYCLE = round(1.0 / (CYCLE_HZ * PHYSICS_DT))
 """Physics steps in one cycle of the interface."""
@@ -39,6 +40,8 @@ class MujocoRobot:
         self._plant, self._settings = plant, settings
         self._torque_limit = np.array(robot.per_joint("torque_limit"))
         self._noise = {name: stream(settings.seed, name) for name in ("q", "dq", "tau", "gyro", "acc")}
+        self._camera = DepthCamera(settings.depth, self.model, settings.seed) if deployment.run.vision else None
+        self._images = 0
         self._damp = damping_law(settings.damping_kd)
         self._laws: deque[tuple[int, MotorLaw]] = deque()
         self._law = self._damp
@@ -72,6 +75,14 @@ class MujocoRobot:
             omega_WB_B=data.sensordata[3:6] + self._plant.gyro_bias + settings.gyro_noise * noise["gyro"],
             acc_B=data.sensordata[0:3] + self._plant.acc_bias + settings.acc_noise * noise["acc"],
         )
+
+    def depth(self) -> DepthImage | None:
+        """An image in the first cycle at or after each of its instants; those that were missed are left out."""
+        due = int(self.t * self._settings.depth.rate_hz + 1e-9) + 1
+        if self._camera is None or due <= self._images:
+            return None
+        self._images = due
+        return self._camera.image(self.data)
 
     def write(self, law: MotorLaw) -> None:
         self._laws.append((self._step + self._delay_steps, law))

@@ -9,7 +9,21 @@ import numpy as np
 from surefoot.config.hw import Hw
 from surefoot.config.robot import Robot
 
-_STREAMS = ("trunk_mass", "com", "friction", "gyro_bias", "acc_bias", "q", "dq", "tau", "gyro", "acc")
+_STREAMS = (
+    "trunk_mass",
+    "com",
+    "friction",
+    "gyro_bias",
+    "acc_bias",
+    "q",
+    "dq",
+    "tau",
+    "gyro",
+    "acc",
+    "depth_noise",
+    "depth_dropout",
+)
+"""A stream is its place in here: new ones come last."""
 
 
 def stream(seed: int, name: str) -> np.random.Generator:

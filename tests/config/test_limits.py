@@ -157,6 +157,7 @@ OUTSIDE = {
     "terrain.planks.stiffness=0": "1 to 100000",
     "terrain.planks.board_mass=0": "0.1 to 100",
     "terrain.planks.frame_height_m=0": "0.02 to 5",
+    "hw.depth.slit_m=-1": "0 to 0.1",
     "run.epoch_s=-1": "0 to 1e+10",
     "elevation_map.vfa.age_max_s=0": "1 to 100000",
     "elevation_map.vfa.std_max_m=0": "0.001 to 0.5",

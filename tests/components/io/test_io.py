@@ -8,7 +8,7 @@ import pytest
 from surefoot.bus.messages import JointCommand
 from surefoot.components.component import Inbox, Outbox
 from surefoot.components.io.io import BACKENDS, Io
-from surefoot.config.deployment import Deployment
+from surefoot.config.deployment import Deployment, Run
 from surefoot.config.hw import Hw
 from surefoot.config.robot import load_robot
 
@@ -82,3 +82,16 @@ def test_the_cycles_missed_in_a_stall_are_made_up_and_none_with_a_command_too_ol
     io.step(0.400, inbox, outbox)
     assert io.robot.t == pytest.approx(0.402) and "400.0 ms old" in io.trouble
     assert len(written) == 201 and not any(law.kp.any() for law in written[21:])
+
+
+def test_with_vision_an_image_has_the_time_of_its_cycles_state_and_blind_there_is_none():
+    published = run(Io(Deployment(run=Run(vision=True))), 70)
+    frames = [message for key, message in published if key == "hw/depth"]
+    states = {message.t for key, message in published if key == "hw/state"}
+    assert [frame.t for frame in frames] == [0.0, 0.068, 0.134] and {frame.t for frame in frames} <= states
+    settings = Deployment().hw.depth
+    for frame in frames:
+        assert frame.valid and frame.depth_m.shape == (settings.rows, settings.columns)
+        assert frame.depth_m.dtype == np.float32 and frame.depth_m.max() > 0.3
+        np.testing.assert_array_equal(frame.fov, [settings.fov_x, settings.fov_y])
+    assert not [key for key, _ in run(Io(Deployment()), 70) if key == "hw/depth"]
