@@ -117,7 +117,7 @@ class Deployment:
 
     def _check_reach(self, robot: Robot) -> None:
         """What the robot is sent to must be within its legs' length, and its start on the ground."""
-        height, planks = robot.nominal.leg_height, self.terrain.planks
+        height, approach = robot.nominal.leg_height, self.terrain.approach
         for name, most, what in (
             ("leg_length_max_m", robot.reach, "legs reach"),
             ("base_height_min_m", height, "hips stand at"),
@@ -127,11 +127,10 @@ class Deployment:
             if value > most:
                 raise ConfigError(f"fsm.{name} = {value}: {robot.name}'s {what} {most:.3f} m; lower it")
         stance = robot.legs["FL"].hip_p_B[0] - robot.legs["RL"].hip_p_B[0] + 2.0 * robot.foot.radius
-        least = stance + planks.start_offset_m
-        if self.terrain.kind == "planks" and planks.run_up_m < least:
+        if approach is not None and approach.run_up_m < stance + approach.start_offset_m:
             raise ConfigError(
-                f"terrain.planks.run_up_m = {planks.run_up_m}: {robot.name} starts on it and needs {least:.2f} m, "
-                "start_offset_m included"
+                f"terrain.{self.terrain.kind}.run_up_m = {approach.run_up_m}: {robot.name} starts on it and needs "
+                f"{stance + approach.start_offset_m:.2f} m, start_offset_m included"
             )
 
 

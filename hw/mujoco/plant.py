@@ -22,6 +22,13 @@ _STREAMS = (
     "acc",
     "depth_noise",
     "depth_dropout",
+    "missing",
+    "slope",
+    "rocks",
+    "tiles",
+    "foam",
+    "edge",
+    "trap",
 )
 """A stream is its place in here: new ones come last."""
 

@@ -59,7 +59,7 @@ def build_scene(
         spec.add_sensor(
             name="gyro", type=mujoco.mjtSensor.mjSENS_GYRO, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="imu"
         )
-    field = add_terrain(spec, deployment.terrain, robot or deployment.load_robot())
+    field = add_terrain(spec, deployment.terrain, robot or deployment.load_robot(), deployment.hw.seed)
     if extra is not None:
         extra(spec)
     for geom in spec.geoms:

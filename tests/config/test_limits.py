@@ -203,6 +203,10 @@ TOGETHER = {
     "trajopt.shift_s=0.95 trajopt.swing_s=0.05 trajopt.interval_s=0.1": r"interval_s = 0\.1 is above swing_s",
     "trajopt.envelope_trim_s=1.0 trajopt.shift_s=0 trajopt.intervals=52": r"trim_s = 1\.0 .* at most 0\.925",
     "terrain.planks.board_thickness_m=0.3": r"board_thickness_m = 0\.3 is above frame_height_m = 0\.2",
+    "terrain.planks.missing=[[4,0]]": r"missing\[0\] = \[4, 0\]: there are 4 rows and 4 columns",
+    "terrain.planks.missing=[[0,0]] terrain.planks.missing_count=1": r"missing_count = 1 with .* not both",
+    "terrain.planks.missing_count=6": r"missing_count = 6: at most 5, a third of 4 rows of 4",
+    "terrain.slope.angle_min_deg=11": r"^terrain\.slope: angle_min_deg = 11\.0 is above angle_max_deg = 10\.0",
     "mpc.intervals=1": r"mpc: intervals = 1 of interval_s = 0\.015 look 0\.015 s ahead: at least 0\.2 s",
     "wbc.posture_kp=600": r"^wbc\.posture_kp = 600\.0 is above hw\.kp_max = 500\.0",
     "wbc.joint_kd=30": r"^wbc\.joint_kd = 30\.0 is above hw\.kd_max = 20\.0",
@@ -219,6 +223,7 @@ TOGETHER = {
     "fsm.leg_up_below_hip_m=0.45": r"^fsm\.leg_up_below_hip_m = 0\.45: aliengo's hips",
     "terrain.kind=planks terrain.planks.run_up_m=0.5": r"^terrain\.planks\.run_up_m = 0\.5: .* 0\.58 m",
     "elevation_map.cell_m=0.06": r"^elevation_map: vfa\.edge_max_m = 0\.03: .* rises 0\.035 m .*cell_m = 0\.06",
+    "terrain.kind=slope terrain.slope.run_up_m=0.5": r"^terrain\.slope\.run_up_m = 0\.5: .* 0\.58 m",
     "robot=spot": r"^robot 'spot' is not described; known: aliengo",
 }
 

@@ -2,33 +2,94 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import mujoco
 
 from surefoot.config.robot import Robot
 from surefoot.config.terrain import Terrain
-from surefoot.hw.mujoco.terrain.flat import add_flat
-from surefoot.hw.mujoco.terrain.planks import add_planks
+from surefoot.hw.mujoco.plant import stream
+from surefoot.hw.mujoco.robot_body import TERRAIN_BITS
+from surefoot.hw.mujoco.terrain.planks import planks_section
+from surefoot.hw.mujoco.terrain.section import FLOOR_RGBA, RIGID_RGBA, Draw, Place, Profile, Section, add_block
+from surefoot.hw.mujoco.terrain.slope import slope_section
+
+FLAT_CROSSED_M = 0.5
+"""What counts as having crossed a plane: this far beyond the front feet's start."""
+
+SECTIONS: dict[str, Callable[[Terrain, Draw], Section]] = {
+    "planks": planks_section,
+    "slope": slope_section,
+}
 
 
 @dataclass(frozen=True)
 class Field:
-    """Where the terrain to be crossed lies along the world's x axis [m]."""
+    """Where the terrain to be crossed lies along the world's x axis, and its nominal surface [m]."""
 
     start_x: float
     end_x: float
+    profile: Profile = ((0.0, 0.0),)
+
+    def level(self, x: float) -> float:
+        """Height of the nominal surface at x: 0 but on an incline and after a step [m]."""
+        after = bisect_right(self.profile, x, key=lambda point: point[0])
+        if after == 0 or after == len(self.profile):
+            return self.profile[max(after - 1, 0)][1]
+        (x0, z0), (x1, z1) = self.profile[after - 1 : after + 1]
+        return z0 + (z1 - z0) * (x - x0) / (x1 - x0)
 
 
-_BUILDERS: dict[str, Callable] = {"flat": add_flat, "planks": add_planks}
-
-
-def add_terrain(spec: mujoco.MjSpec, terrain: Terrain, robot: Robot) -> Field:
+def add_terrain(spec: mujoco.MjSpec, terrain: Terrain, robot: Robot, seed: int) -> Field:
     """Add the terrain's bodies and geoms; the surface under the robot's start is z = 0.
 
     The robot starts with its trunk at x = y = 0, so its front feet stand at the hips' x.
+
+    Args:
+        spec: the scene so far.
+        terrain: description.
+        robot: who starts on it.
+        seed: what the description leaves to chance is drawn from it.
     """
     front_x = robot.legs["FL"].hip_p_B[0] + robot.foot.radius
-    start_x, end_x = _BUILDERS[terrain.kind](spec, terrain, front_x)
-    return Field(start_x, end_x)
+    approach = terrain.approach
+    if approach is None:
+        _add_ground(spec, 0.0)
+        return Field(front_x, front_x + FLAT_CROSSED_M)
+    draw = cache(lambda name: stream(seed, name))
+    sections = [SECTIONS[kind](terrain, draw) for kind in (terrain.kind,)]
+    start_x = front_x + approach.start_offset_m
+    starts, profile = _in_a_row(sections, start_x)
+    floor_z = min(z0 - section.depth_m for (_, z0), section in zip(starts, sections, strict=True))
+    _add_ground(spec, floor_z)
+    end_x, end_z = profile[-1]
+    add_block(spec, "run_up", start_x - approach.run_up_m, start_x, 0.0, floor_z)
+    add_block(spec, "run_out", end_x, end_x + approach.run_out_m, end_z, floor_z)
+    for (x0, z0), section in zip(starts, sections, strict=True):
+        section.add(spec, Place(x0, z0, floor_z, ""))
+    return Field(start_x, end_x, profile)
+
+
+def _in_a_row(sections: list[Section], x: float) -> tuple[list[tuple[float, float]], Profile]:
+    """Where each section begins, and the surface over them all."""
+    z = 0.0
+    starts, profile = [], []
+    for section in sections:
+        starts.append((x, z))
+        profile += [(x + ahead, z + up) for ahead, up in section.profile]
+        x, z = profile[-1]
+    return starts, tuple(profile)
+
+
+def _add_ground(spec: mujoco.MjSpec, z: float) -> None:
+    spec.worldbody.add_geom(
+        name="ground",
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        size=[20.0, 20.0, 0.1],
+        pos=[0.0, 0.0, z],
+        rgba=RIGID_RGBA if z == 0.0 else FLOOR_RGBA,
+        **TERRAIN_BITS,
+    )
