@@ -15,6 +15,8 @@ Offset = Annotated[float, Within(0.0, 10.0)]
 FrameHeight = Annotated[float, Within(0.02, 5.0)]
 Place = Annotated[int, Within(0, 49)]
 
+_LAYERS_MOST = 6.0  # of stones, if each lay in a square of its largest extent: above, they are a wall
+
 
 @dataclass(frozen=True, kw_only=True)
 class Approach:
@@ -87,12 +89,41 @@ class Slope(Approach):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Rocks(Approach):
+    """Loose convex stones, lying as they came to rest on flat rigid ground."""
+
+    count: Annotated[int, Within(1, 200)] = 90
+    size_min_m: Annotated[float, Within(0.02, 0.5)] = 0.05  # largest extent, drawn between the two
+    size_max_m: Annotated[float, Within(0.02, 0.5)] = 0.15
+    flatness_min: Annotated[float, Within(0.1, 1.0)] = 0.35  # height over largest extent, drawn between the two
+    flatness_max: Annotated[float, Within(0.1, 1.0)] = 0.6
+    density_min: Annotated[float, Within(100.0, 10000.0)] = 2000.0  # drawn between the two [kg/m^3]
+    density_max: Annotated[float, Within(100.0, 10000.0)] = 2600.0
+    length_m: Annotated[float, Within(0.2, 5.0)] = 0.9  # of the ground they lie on
+    width_m: Annotated[float, Within(0.2, 5.0)] = 1.1
+
+    def __post_init__(self) -> None:
+        ordered(self, "size_min_m", "size_max_m", "sizes are drawn between the two")
+        ordered(self, "flatness_min", "flatness_max", "heights are drawn between the two")
+        ordered(self, "density_min", "density_max", "densities are drawn between the two")
+        for side in ("length_m", "width_m"):
+            ordered(self, "size_max_m", side, "a stone would not fit on its ground")
+        layers = self.count * self.size_max_m**2 / (self.length_m * self.width_m)
+        if layers > _LAYERS_MOST:
+            raise ConfigError(
+                f"count = {self.count} of up to {self.size_max_m} m lie about {layers:.1f} layers high on "
+                f"{self.length_m} x {self.width_m} m: at most {_LAYERS_MOST}; fewer, smaller or more ground"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
 class Terrain:
     """Which ground, and its figures."""
 
-    kind: Literal["flat", "planks", "slope"] = "flat"
+    kind: Literal["flat", "planks", "slope", "rocks"] = "flat"
     planks: Planks = field(default_factory=Planks)
     slope: Slope = field(default_factory=Slope)
+    rocks: Rocks = field(default_factory=Rocks)
 
     @property
     def approach(self) -> Approach | None:

@@ -155,7 +155,8 @@ class MujocoRobot:
         if len(geoms):
             # Elliptic cones: a contact's rows of efc_force are its force along the contact frame's axes.
             address, frames = contact.efc_address, contact.frame
-            for index in range(len(geoms)):
+            # Stones touch each other and the ground too; sleeping ones make no contacts among themselves.
+            for index in np.flatnonzero(self._robot_geom[geoms].any(axis=1)):
                 if address[index] < 0:
                     continue
                 first, second = geoms[index]

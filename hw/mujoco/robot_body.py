@@ -11,7 +11,10 @@ ROBOT_BITS = {"contype": 1, "conaffinity": 2}
 """Collision bits of the robot: it meets the terrain, never itself."""
 
 TERRAIN_BITS = {"contype": 2, "conaffinity": 1}
-"""Collision bits of the terrain: it meets the robot, never itself."""
+"""Collision bits of the terrain: it meets the robot and what is loose, never itself."""
+
+LOOSE_BITS = {"contype": 4, "conaffinity": 7}
+"""Collision bits of loose terrain: it meets the robot, the terrain and its own kind."""
 
 _COLORS = {
     "trunk": (0.25, 0.27, 0.30, 1.0),

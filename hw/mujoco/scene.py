@@ -62,8 +62,17 @@ def build_scene(
     field = add_terrain(spec, deployment.terrain, robot or deployment.load_robot(), deployment.hw.seed)
     if extra is not None:
         extra(spec)
+    if spec.option.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP:
+        _keep_awake(spec)
     for geom in spec.geoms:
         geom.friction = [friction, 0.005, 0.0001]
         geom.solref = [deployment.hw.solref_s, 1.0]
         geom.solimp = _SOLIMP
     return spec.compile(), field
+
+
+def _keep_awake(spec: mujoco.MjSpec) -> None:
+    """Nothing rests but what the terrain lets rest: not the robot, nor what stands in its way."""
+    for body in spec.worldbody.bodies:
+        if body.sleep == mujoco.mjtSleepPolicy.mjSLEEP_AUTO:
+            body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER

@@ -14,6 +14,7 @@ from surefoot.config.terrain import Terrain
 from surefoot.hw.mujoco.plant import stream
 from surefoot.hw.mujoco.robot_body import TERRAIN_BITS
 from surefoot.hw.mujoco.terrain.planks import planks_section
+from surefoot.hw.mujoco.terrain.rocks import rocks_section
 from surefoot.hw.mujoco.terrain.section import FLOOR_RGBA, RIGID_RGBA, Draw, Place, Profile, Section, add_block
 from surefoot.hw.mujoco.terrain.slope import slope_section
 
@@ -23,6 +24,7 @@ FLAT_CROSSED_M = 0.5
 SECTIONS: dict[str, Callable[[Terrain, Draw], Section]] = {
     "planks": planks_section,
     "slope": slope_section,
+    "rocks": rocks_section,
 }
 
 

@@ -61,3 +61,9 @@ def add_block(spec: mujoco.MjSpec, name: str, x0: float, x1: float, z: float, fl
         rgba=RIGID_RGBA,
         **TERRAIN_BITS,
     )
+
+
+def let_sleep(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> None:
+    """A body that begins at rest costs nothing until the robot, or what it moves, touches it."""
+    spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
+    body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_INIT
