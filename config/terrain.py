@@ -13,6 +13,7 @@ Stiffness = Annotated[float, Within(1.0, 1e5)]  # above it a light board swings 
 Platform = Annotated[float, Within(0.1, 50.0)]
 Offset = Annotated[float, Within(0.0, 10.0)]
 FrameHeight = Annotated[float, Within(0.02, 5.0)]
+Load = Annotated[float, Within(1.0, 2000.0)]
 Place = Annotated[int, Within(0, 49)]
 
 _LAYERS_MOST = 6.0  # of stones, if each lay in a square of its largest extent: above, they are a wall
@@ -117,13 +118,72 @@ class Rocks(Approach):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Tiles(Approach):
+    """Tiles held up against a stop; each bears up to its load, then its support snaps through."""
+
+    rows: Count = 10
+    columns: Count = 9
+    tile_m: Annotated[float, Within(0.02, 1.0)] = 0.10
+    gap_m: Annotated[float, Within(0.0, 0.02)] = 0.002
+    mass: Annotated[float, Within(0.05, 20.0)] = 0.2  # [kg]
+    load_min_n: Load = 40.0  # that a tile gives way at, drawn between the two
+    load_max_n: Load = 160.0
+    travel_m: Annotated[float, Within(0.02, 1.0)] = 0.11  # from stop to stop
+    return_n: Annotated[float, Within(0.1, 100.0)] = 3.0  # push upwards at the lower stop, over the tile's weight
+    damping: Annotated[float, Within(0.0, 1e3)] = 4.0  # [N s/m]
+    frame_height_m: FrameHeight = 0.20  # surface above the ground beneath
+
+    def __post_init__(self) -> None:
+        ordered(self, "load_min_n", "load_max_n", "loads are drawn between the two")
+        ordered(self, "travel_m", "frame_height_m", "a tile would stop below the ground beneath")
+        ordered(self, "return_n", "load_min_n", "a tile that has given way would bear more than before")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trap(Tiles):
+    """Tiles across the whole way of which none bears a foot: whoever is on the run-up has to stay there."""
+
+    rows: Count = 5
+    columns: Count = 8
+    tile_m: Annotated[float, Within(0.02, 1.0)] = 0.20
+    load_min_n: Load = 4.0
+    load_max_n: Load = 8.0  # where four tiles meet a foot has the support of all of them
+    travel_m: Annotated[float, Within(0.02, 1.0)] = 0.17
+    start_offset_m: Offset = 0.02
+
+
+@dataclass(frozen=True, kw_only=True)
+class Edge(Approach):
+    """Rigid ground that drops a little just beyond where a front foot is meant to land."""
+
+    distance_m: Annotated[float, Within(0.0, 5.0)] = 0.095  # from the front of the front feet to the drop
+    distance_spread_m: Annotated[float, Within(0.0, 0.5)] = 0.025  # drawn uniform +- this
+    drop_min_m: Annotated[float, Within(0.0, 0.3)] = 0.02  # drawn between the two
+    drop_max_m: Annotated[float, Within(0.0, 0.3)] = 0.04
+    length_m: Length = 0.5  # until it counts as crossed; the lower ground goes on
+    start_offset_m: Offset = 0.0
+
+    def __post_init__(self) -> None:
+        ordered(self, "drop_min_m", "drop_max_m", "the drop is drawn between the two")
+        ordered(self, "distance_spread_m", "distance_m", "the drop could lie behind the start")
+        if self.distance_m + self.distance_spread_m >= self.length_m:
+            raise ConfigError(
+                f"distance_m = {self.distance_m} +- distance_spread_m = {self.distance_spread_m} is not within "
+                f"length_m = {self.length_m}: the drop could lie beyond the end; make it longer"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
 class Terrain:
     """Which ground, and its figures."""
 
-    kind: Literal["flat", "planks", "slope", "rocks"] = "flat"
+    kind: Literal["flat", "planks", "slope", "rocks", "tiles", "trap", "edge"] = "flat"
     planks: Planks = field(default_factory=Planks)
     slope: Slope = field(default_factory=Slope)
     rocks: Rocks = field(default_factory=Rocks)
+    tiles: Tiles = field(default_factory=Tiles)
+    trap: Trap = field(default_factory=Trap)
+    edge: Edge = field(default_factory=Edge)
 
     @property
     def approach(self) -> Approach | None:

@@ -14,6 +14,7 @@ from surefoot.hw.mujoco.terrain import Field, add_terrain
 PHYSICS_DT = 0.001
 """Step of the physics and of the motor law [s]."""
 
+_CLEAR_M = 2.0
 _SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)
 
 
@@ -76,3 +77,6 @@ def _keep_awake(spec: mujoco.MjSpec) -> None:
     for body in spec.worldbody.bodies:
         if body.sleep == mujoco.mjtSleepPolicy.mjSLEEP_AUTO:
             body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
+            if body.joints and body.joints[0].type == mujoco.mjtJoint.mjJNT_FREE:
+                # Until it is put in its place it must not touch, and so wake, what begins asleep.
+                body.pos = [0.0, 0.0, _CLEAR_M]

@@ -13,10 +13,12 @@ from surefoot.config.robot import Robot
 from surefoot.config.terrain import Terrain
 from surefoot.hw.mujoco.plant import stream
 from surefoot.hw.mujoco.robot_body import TERRAIN_BITS
+from surefoot.hw.mujoco.terrain.edge import edge_section
 from surefoot.hw.mujoco.terrain.planks import planks_section
 from surefoot.hw.mujoco.terrain.rocks import rocks_section
 from surefoot.hw.mujoco.terrain.section import FLOOR_RGBA, RIGID_RGBA, Draw, Place, Profile, Section, add_block
 from surefoot.hw.mujoco.terrain.slope import slope_section
+from surefoot.hw.mujoco.terrain.tiles import tiles_section, trap_section
 
 FLAT_CROSSED_M = 0.5
 """What counts as having crossed a plane: this far beyond the front feet's start."""
@@ -25,6 +27,9 @@ SECTIONS: dict[str, Callable[[Terrain, Draw], Section]] = {
     "planks": planks_section,
     "slope": slope_section,
     "rocks": rocks_section,
+    "tiles": tiles_section,
+    "trap": trap_section,
+    "edge": edge_section,
 }
 
 
