@@ -153,6 +153,28 @@ class Trap(Tiles):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Foam(Approach):
+    """Soft pads that sink under a foot and bear it."""
+
+    rows: Count = 5
+    columns: Count = 5
+    pad_m: Annotated[float, Within(0.02, 1.0)] = 0.20
+    gap_m: Annotated[float, Within(0.0, 0.02)] = 0.002
+    mass: Annotated[float, Within(0.05, 20.0)] = 0.5  # [kg]
+    force_n: Load = 110.0  # at which a pad sinks ...
+    sink_min_m: Annotated[float, Within(0.001, 0.024)] = 0.002  # ... this far, drawn between the two
+    sink_max_m: Annotated[float, Within(0.001, 0.024)] = 0.020
+    relaxation_s: Annotated[float, Within(0.001, 0.1)] = (
+        0.025  # a sudden force has sunk it by 63 % after this time
+    )
+    thickness_m: Annotated[float, Within(0.01, 0.5)] = 0.08
+
+    def __post_init__(self) -> None:
+        ordered(self, "sink_min_m", "sink_max_m", "sinkings are drawn between the two")
+        ordered(self, "sink_max_m", "thickness_m", "a pad would be pressed flat before")
+
+
+@dataclass(frozen=True, kw_only=True)
 class Edge(Approach):
     """Rigid ground that drops a little just beyond where a front foot is meant to land."""
 
@@ -177,11 +199,12 @@ class Edge(Approach):
 class Terrain:
     """Which ground, and its figures."""
 
-    kind: Literal["flat", "planks", "slope", "rocks", "tiles", "trap", "edge"] = "flat"
+    kind: Literal["flat", "planks", "slope", "rocks", "tiles", "foam", "trap", "edge"] = "flat"
     planks: Planks = field(default_factory=Planks)
     slope: Slope = field(default_factory=Slope)
     rocks: Rocks = field(default_factory=Rocks)
     tiles: Tiles = field(default_factory=Tiles)
+    foam: Foam = field(default_factory=Foam)
     trap: Trap = field(default_factory=Trap)
     edge: Edge = field(default_factory=Edge)
 

@@ -14,6 +14,7 @@ from surefoot.config.terrain import Terrain
 from surefoot.hw.mujoco.plant import stream
 from surefoot.hw.mujoco.robot_body import TERRAIN_BITS
 from surefoot.hw.mujoco.terrain.edge import edge_section
+from surefoot.hw.mujoco.terrain.foam import foam_section
 from surefoot.hw.mujoco.terrain.planks import planks_section
 from surefoot.hw.mujoco.terrain.rocks import rocks_section
 from surefoot.hw.mujoco.terrain.section import FLOOR_RGBA, RIGID_RGBA, Draw, Place, Profile, Section, add_block
@@ -28,6 +29,7 @@ SECTIONS: dict[str, Callable[[Terrain, Draw], Section]] = {
     "slope": slope_section,
     "rocks": rocks_section,
     "tiles": tiles_section,
+    "foam": foam_section,
     "trap": trap_section,
     "edge": edge_section,
 }
