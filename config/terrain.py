@@ -13,6 +13,7 @@ Stiffness = Annotated[float, Within(1.0, 1e5)]  # above it a light board swings 
 Platform = Annotated[float, Within(0.1, 50.0)]
 Offset = Annotated[float, Within(0.0, 10.0)]
 FrameHeight = Annotated[float, Within(0.02, 5.0)]
+Crossed = Literal["planks", "slope", "rocks", "tiles", "foam", "trap", "edge"]
 Load = Annotated[float, Within(1.0, 2000.0)]
 Place = Annotated[int, Within(0, 49)]
 
@@ -196,10 +197,22 @@ class Edge(Approach):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Lane(Approach):
+    """Several of the others in a row, each with the figures of its own section, rigid platforms between them."""
+
+    sections: tuple[Crossed, ...] = ("planks", "rocks", "foam", "tiles")
+    platform_m: Platform = 0.6  # long enough for a robot to stand on
+
+    def __post_init__(self) -> None:
+        if not self.sections:
+            raise ConfigError('sections = []: name at least one, such as ["planks", "rocks"]')
+
+
+@dataclass(frozen=True, kw_only=True)
 class Terrain:
     """Which ground, and its figures."""
 
-    kind: Literal["flat", "planks", "slope", "rocks", "tiles", "foam", "trap", "edge"] = "flat"
+    kind: Literal["flat", "planks", "slope", "rocks", "tiles", "foam", "trap", "edge", "lane"] = "flat"
     planks: Planks = field(default_factory=Planks)
     slope: Slope = field(default_factory=Slope)
     rocks: Rocks = field(default_factory=Rocks)
@@ -207,6 +220,14 @@ class Terrain:
     foam: Foam = field(default_factory=Foam)
     trap: Trap = field(default_factory=Trap)
     edge: Edge = field(default_factory=Edge)
+    lane: Lane = field(default_factory=Lane)
+
+    @property
+    def row(self) -> tuple[Crossed, ...]:
+        """What stands in a row along the way."""
+        if self.kind == "flat":
+            return ()
+        return self.lane.sections if self.kind == "lane" else (self.kind,)
 
     @property
     def approach(self) -> Approach | None:

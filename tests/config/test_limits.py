@@ -221,6 +221,8 @@ TOGETHER = {
     "terrain.edge.distance_m=0.6": r"distance_m = 0\.6 \+- .* not within length_m = 0\.5",
     "terrain.foam.sink_min_m=0.022": r"^terrain\.foam: sink_min_m = 0\.022 is above sink_max_m = 0\.02",
     "terrain.foam.thickness_m=0.015": r"sink_max_m = 0\.02 is above thickness_m = 0\.015",
+    "terrain.lane.sections=[]": r"^terrain\.lane: sections = \[\]: name at least one",
+    'terrain.lane.sections=["planks","lane"]': r"^terrain\.lane\.sections\[1\] = 'lane': must be one of 'planks'",
     "mpc.intervals=1": r"mpc: intervals = 1 of interval_s = 0\.015 look 0\.015 s ahead: at least 0\.2 s",
     "wbc.posture_kp=600": r"^wbc\.posture_kp = 600\.0 is above hw\.kp_max = 500\.0",
     "wbc.joint_kd=30": r"^wbc\.joint_kd = 30\.0 is above hw\.kd_max = 20\.0",

@@ -68,29 +68,49 @@ def add_terrain(spec: mujoco.MjSpec, terrain: Terrain, robot: Robot, seed: int) 
     if approach is None:
         _add_ground(spec, 0.0)
         return Field(front_x, front_x + FLAT_CROSSED_M)
-    draw = cache(lambda name: stream(seed, name))
-    sections = [SECTIONS[kind](terrain, draw) for kind in (terrain.kind,)]
     start_x = front_x + approach.start_offset_m
-    starts, profile = _in_a_row(sections, start_x)
-    floor_z = min(z0 - section.depth_m for (_, z0), section in zip(starts, sections, strict=True))
+    placed, profile = _in_a_row(_sections(terrain, cache(lambda name: stream(seed, name))), start_x)
+    floor_z = min(z0 - section.depth_m for section, _, _, z0 in placed)
     _add_ground(spec, floor_z)
     end_x, end_z = profile[-1]
     add_block(spec, "run_up", start_x - approach.run_up_m, start_x, 0.0, floor_z)
     add_block(spec, "run_out", end_x, end_x + approach.run_out_m, end_z, floor_z)
-    for (x0, z0), section in zip(starts, sections, strict=True):
-        section.add(spec, Place(x0, z0, floor_z, ""))
+    for section, prefix, x0, z0 in placed:
+        section.add(spec, Place(x0, z0, floor_z, prefix))
     return Field(start_x, end_x, profile)
 
 
-def _in_a_row(sections: list[Section], x: float) -> tuple[list[tuple[float, float]], Profile]:
-    """Where each section begins, and the surface over them all."""
+def _sections(terrain: Terrain, draw: Draw) -> list[tuple[Section, str]]:
+    """All that stands in a row, and what the names of its bodies begin with."""
+    sections: list[tuple[Section, str]] = []
+    for number, kind in enumerate(terrain.row):
+        if number:
+            sections.append((_platform(terrain.lane.platform_m), f"{number}_"))
+        sections.append((SECTIONS[kind](terrain, draw), f"{number}_" if terrain.kind == "lane" else ""))
+    return sections
+
+
+def _platform(length_m: float) -> Section:
+    """Rigid level ground."""
+
+    def add(spec: mujoco.MjSpec, place: Place) -> None:
+        add_block(spec, f"{place.prefix}platform", place.x0, place.x0 + length_m, place.z0, place.floor_z)
+
+    return Section(((0.0, 0.0), (length_m, 0.0)), 0.0, add)
+
+
+def _in_a_row(
+    sections: list[tuple[Section, str]], x: float
+) -> tuple[list[tuple[Section, str, float, float]], Profile]:
+    """Each section with its prefix and where it begins, from x on, and the surface over them all."""
     z = 0.0
-    starts, profile = [], []
-    for section in sections:
-        starts.append((x, z))
+    placed: list[tuple[Section, str, float, float]] = []
+    profile: list[tuple[float, float]] = []
+    for section, prefix in sections:
+        placed.append((section, prefix, x, z))
         profile += [(x + ahead, z + up) for ahead, up in section.profile]
         x, z = profile[-1]
-    return starts, tuple(profile)
+    return placed, tuple(profile)
 
 
 def _add_ground(spec: mujoco.MjSpec, z: float) -> None:
