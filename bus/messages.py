@@ -344,7 +344,9 @@ class SimTruth(Message):
     body_contact: str = text("names of trunk, hips, thighs or calves that touch something; empty when none")
     saturated: bool = flag("a motor is at its torque limit")
     power_w: float = number("sum of |torque x velocity|", "W")
-    terrain_q: np.ndarray = array(-1, doc="joint positions of moving terrain", unit="rad")
+    terrain_q: np.ndarray = array(
+        -1, doc="positions of moving terrain: angles, heights, poses of stones", unit="rad, m"
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

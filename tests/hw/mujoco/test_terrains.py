@@ -63,6 +63,8 @@ def test_the_terrain_rests_until_the_robot_comes(stood):
     _, machine = stood
     started = machine.model.qpos0[19:]
     np.testing.assert_allclose(machine.truth().terrain_q, started, atol=1e-3)
+    begins_asleep = machine.model.tree_sleep_policy == mujoco.mjtSleepPolicy.mjSLEEP_INIT
+    assert not machine.data.tree_awake[begins_asleep].any(), "or it costs more than flat ground"
 
 
 def test_ground_lies_before_and_behind(stood):
