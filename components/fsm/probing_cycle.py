@@ -358,12 +358,24 @@ class ProbingCycle:
             self._accept(now, "contact; probing is off")
         elif self._around > AROUND_POINTS:
             self._accept(now, "all forces were borne here and around")
+        elif not self._around and self._known_to_bear(foot):
+            self._borne_n = float(self._answer.held_n[leg])
+            self._accept(now, self._known_to_bear(foot))
         elif self._around and self._drop(foot) > self._settings.around_drop_m:
             why = f"the ground beside the foothold lies {1e2 * self._drop(foot):.1f} cm lower"
             self._event("rejected", why, now, foot)
             self._begin_leg_up(now, why)
         else:
             self._begin_probe(now)
+
+    def _known_to_bear(self, foot_W: np.ndarray) -> str:
+        """Why a foothold need not be probed, or "": the map knows this very spot to bear what the stride needs."""
+        held_n = float(self._answer.held_n[self._leg])
+        needed = peak_n(self._press.envelope_W, self.reference.normal_W)
+        off = float(np.linalg.norm(foot_W - self._answer.foothold_WF[self._leg]))
+        if not self._settings.adaptive_probing or held_n <= 0.0 or held_n < needed or off > self._foot_radius_m:
+            return ""
+        return f"known to bear {held_n:.0f} N of {needed:.0f} N needed, {1e3 * off:.0f} mm away: not probed again"
 
     def _drop(self, foot_W: np.ndarray) -> float:
         """How much lower a point around it is than the foothold, along the normal [m]."""
