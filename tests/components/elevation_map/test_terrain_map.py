@@ -362,11 +362,23 @@ def test_way_and_drift_make_old_heights_uncertain():
     before = seeing.patch(np.array([0.55, 0.0]), 2, 2, t).std_m
     covariance = np.zeros((9, 9))
     covariance[2, 2] = 0.02**2
-    far = estimate(t + 1.0, (0.16, 0.0, HEIGHT), covariance=covariance)
+    far = estimate(t + 1.0, (0.2, 0.0, HEIGHT), covariance=covariance)
     empty = Sight(depth=dataclasses.replace(NOISY, dropout=1.0)).frame(t + 1.0, far.p_WB)
     seeing.see(empty, far, None)
     after = seeing.patch(np.array([0.55, 0.0]), 2, 2, t).std_m
     np.testing.assert_allclose(after, np.hypot(before, 0.02), rtol=0.1)
+
+
+def test_where_feet_stand_on_what_was_seen_the_drift_is_known():
+    sight, seeing = Sight(depth=NOISY), fresh_map()
+    t = walk(sight, seeing, strolling(60, x0=-1.0, speed=0.25))
+    reference, figures = standing(STANCE + [0.2, 0.0, 0.0])
+    covariance = np.zeros((9, 9))
+    for z_std in (0.0, 0.02):
+        covariance[2, 2], t = z_std**2, t + 0.1
+        now = estimate(t, (0.2, 0.0, HEIGHT), **figures, covariance=covariance.copy())
+        seeing.see(sight.frame(t, (0.2, 0.0, HEIGHT)), now, reference)
+    assert seeing.patch(np.array([0.0, 0.0]), 2, 2, t).std_m.max() < 0.01
 
 
 @pytest.mark.parametrize("heights", [True, False])
