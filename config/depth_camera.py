@@ -17,9 +17,9 @@ class DepthCamera:
     """Pose, image and noise of the camera; it looks forward and down from the front of the trunk."""
 
     p_B: tuple[Offset, Offset, Offset] = (0.33, 0.0, 0.02)  # optical centre in the trunk [m]
-    pitch: Annotated[float, Within(-1.57, 1.57)] = 0.90  # optical axis below the trunk's x axis [rad]
-    fov_x: Angle = 1.52  # horizontal, of a common stereo camera [rad]
-    fov_y: Angle = 1.01  # vertical [rad]
+    pitch: Annotated[float, Within(-1.57, 1.57)] = 0.95  # optical axis below the trunk's x axis [rad]
+    fov_x: Angle = 1.57  # horizontal, of a wide stereo camera [rad]
+    fov_y: Angle = 1.13  # vertical: from under the trunk's front end to 1 m ahead of it [rad]
     columns: Annotated[int, Within(2, 640)] = 80
     rows: Annotated[int, Within(2, 480)] = 60
     rate_hz: Annotated[float, Within(1.0, 60.0)] = 15.0

@@ -12,11 +12,15 @@ from time import perf_counter
 import numpy as np
 
 from surefoot.bus.message import Message
-from surefoot.bus.messages import MotionReference, PlanRequest, Policy, StateEstimate
+from surefoot.bus.messages import DepthFrame, MotionReference, PlanRequest, Policy, StateEstimate
 from surefoot.components.component import Inbox, Outbox
+from surefoot.components.elevation_map.elevation_map import ElevationMap
 from surefoot.components.lockstep import Lockstep
 from surefoot.components.trajopt.trajopt import Trajopt
-from surefoot.config.deployment import Deployment
+from surefoot.config.deployment import Deployment, Run
+from surefoot.config.terrain import Terrain
+from surefoot.hw.mujoco.backend import MujocoRobot
+from surefoot.hw.robot_interface import MotorLaw
 
 WARM_UP_S = 4.0
 """Simulated time until the robot stands and every component is at work."""
@@ -25,6 +29,7 @@ WALK_S = 12.0
 """Simulated time that is measured: more than one foothold, with its swing and its probing."""
 
 TRAJOPT_SOLVES = 24
+IMAGES = 60
 
 # (row, figure, at most).
 _ASKED = (
@@ -32,6 +37,7 @@ _ASKED = (
     ("mpc tick, p99 [ms]", lambda found: found["step_ms"]["mpc"]["p99"], 10.0),
     ("trajopt, mean [ms]", lambda found: found["trajopt_ms"]["mean"], 100.0),
     ("wbc tick, median [ms]", lambda found: found["step_ms"]["wbc"]["p50"], 0.8),
+    ("elevation map, frame to map, median [ms]", lambda found: found["map_ms"]["p50"], 20.0),
 )
 _REAL_TIME_FACTOR = 0.6
 
@@ -41,13 +47,15 @@ def bench(say: Callable[[str], None] = print) -> dict:
 
     Returns:
         `calibration_ms`; `step_ms`: median, p99 and maximum for each component; `mpc_stage_ms`: the same for
-        each stage of an mpc tick; `trajopt_ms`: mean, median, maximum and number of solves;
+        each stage of an mpc tick; `trajopt_ms`: mean, median, maximum and number of solves; `image_ms` of the
+        simulated depth camera and `map_ms` from an image to the map with it: median, p99 and maximum;
         `real_time_factor` of the whole stack; `references`: how many had a leg swing and how many one probe.
     """
     found: dict = {"calibration_ms": calibration_ms()}
     witness = _Witness()
     found |= _walk(witness)
     found["trajopt_ms"] = _trajopt(witness)
+    found |= _sight()
     _tell(found, say)
     return found
 
@@ -133,6 +141,38 @@ def _trajopt(witness: _Witness) -> dict:
     return _spread(times[1:]) | {"mean": float(np.mean(times[1:])), "solves": TRAJOPT_SOLVES}
 
 
+def _sight() -> dict:
+    """A robot that stands before the planks and looks at them; its map knows where it is."""
+    deployment = Deployment(run=Run(vision=True), terrain=Terrain(kind="planks"))
+    machine, component = MujocoRobot(deployment), ElevationMap(deployment)
+    inbox, outbox = Inbox(component.inputs), Outbox(component.outputs, lambda key, message: None)
+    zero = np.zeros(12)
+    stand_q = np.tile(deployment.load_robot().nominal.stand_q, 4)
+    hold = MotorLaw(q=stand_q, dq=zero, kp=np.full(12, 300.0), kd=np.full(12, 8.0), tau=zero)
+    image_ms: list[float] = []
+    map_ms: list[float] = []
+    while len(map_ms) <= IMAGES:
+        begun = perf_counter()
+        image = machine.depth()
+        if image is not None:
+            image_ms.append(1e3 * (perf_counter() - begun))
+            truth = machine.truth()
+            frame = DepthFrame(
+                t=truth.t, valid=True, p_BC=image.p_BC, quat_BC=image.quat_BC, fov=image.fov, depth_m=image.depth_m
+            )
+            inbox.deliver(
+                "state/estimate", StateEstimate(t=truth.t, valid=True, p_WB=truth.p_WB, quat_WB=truth.quat_WB)
+            )
+            inbox.deliver("hw/depth", frame)
+            begun = perf_counter()
+            component.step(truth.t, inbox, outbox)
+            map_ms.append(1e3 * (perf_counter() - begun))
+            inbox.clear_new()
+        machine.write(hold)
+        machine.advance()
+    return {"image_ms": _spread(image_ms[1:]), "map_ms": _spread(map_ms[1:])}
+
+
 def _spread(times: Iterable[float]) -> dict[str, float]:
     times = np.asarray(times)
     return {"p50": float(np.median(times)), "p99": float(np.percentile(times, 99)), "max": float(times.max())}
@@ -140,7 +180,7 @@ def _spread(times: Iterable[float]) -> dict[str, float]:
 
 def _tell(found: dict, say: Callable[[str], None]) -> None:
     def row(what: str, asked: str, got: str) -> None:
-        say(f"{what:34} | {asked:>8} | {got}")
+        say(f"{what:40} | {asked:>8} | {got}")
 
     def spread(times: dict[str, float]) -> str:
         return f"{times['p50']:6.2f} {times['p99']:6.2f} {times['max']:6.2f}"
@@ -156,6 +196,8 @@ def _tell(found: dict, say: Callable[[str], None]) -> None:
     row("median, p99, max of a tick [ms]", "", "")
     for name, times in found["step_ms"].items():
         row(f"  {name}", "", spread(times))
+    row("  image of the depth camera, planks", "", spread(found["image_ms"]))
+    row("  elevation map, image to map", "", spread(found["map_ms"]))
     row("stages of an mpc tick [ms]", "", "")
     for stage, times in found["mpc_stage_ms"].items():
         row(f"  {stage}", "", spread(times))

@@ -10,8 +10,8 @@ from surefoot.components.elevation_map.torus import Torus
 
 def height_drift(
     torus: Torus, estimate: StateEstimate, reference: MotionReference | None, foot_radius_m: float, most_m: float
-) -> float:
-    """Median over the trusted stance feet of contact height less map height [m]; 0 without any.
+) -> float | None:
+    """Median over the trusted stance feet of contact height less map height [m]; None without any.
 
     Args:
         torus: its layer `height` is compared; the median of the nine cells at a foot, if most are known.
@@ -21,7 +21,7 @@ def height_drift(
         most_m: a foot that is further off is on something else than was seen, and does not count.
     """
     if reference is None:
-        return 0.0
+        return None
     standing = (reference.leg_status == LegStatus.STANCE) & estimate.contact
     ground = estimate.p_WF[standing] - foot_radius_m * estimate.normal_W
     off = []
@@ -31,4 +31,4 @@ def height_drift(
         if len(known) > 4:
             off.append(float(p_W[2] - np.median(known)))
     near = [each for each in off if abs(each) <= most_m]
-    return float(np.median(near)) if near else 0.0
+    return float(np.median(near)) if near else None

@@ -52,12 +52,11 @@ class TerrainMap:
     def see(self, frame: DepthFrame, estimate: StateEstimate, reference: MotionReference | None) -> None:
         """Take in an image; `estimate` is of the same time."""
         settings = self._settings
-        self._grow(estimate)
-        drift = settings.drift_gain * height_drift(
-            self._torus, estimate, reference, self._radius, settings.drift_max_m
-        )
-        self.drift_m += drift
-        self._heights.shift(drift)
+        drift = height_drift(self._torus, estimate, reference, self._radius, settings.drift_max_m)
+        self._grow(estimate, told=drift is not None)
+        if drift is not None:
+            self.drift_m += settings.drift_gain * drift
+            self._heights.shift(settings.drift_gain * drift)
         view = view_of(frame, estimate)
         self._heights.fuse(points_of(view, estimate, settings.range_noise_m), frame.t)
         self._heights.see_through(view, frame.t)
@@ -107,12 +106,12 @@ class TerrainMap:
         for t in state.get("t", ()):
             self.seen_t = float(t)
 
-    def _grow(self, estimate: StateEstimate) -> None:
-        """Old heights are less certain by what the base's has drifted since the last image."""
+    def _grow(self, estimate: StateEstimate, told: bool) -> None:
+        """Old heights are less certain by how far the base has drifted since the last image, if no foot tells."""
         last, self._last = self._last, estimate
         if last is not None:
             way = float(np.linalg.norm(estimate.p_WB - last.p_WB))
-            drifted = max(float(estimate.covariance[2, 2] - last.covariance[2, 2]), 0.0)
+            drifted = 0.0 if told else max(float(estimate.covariance[2, 2] - last.covariance[2, 2]), 0.0)
             self._heights.grow(self._settings.motion_m**2 * way + drifted)
 
     def _cut(self, first: np.ndarray, shape: tuple[int, int], t: float) -> Patch:

@@ -14,7 +14,10 @@ from surefoot.hw.robot_interface import DepthImage
 _COPLANAR_M = 0.005
 """Two returns on either side of a slit are one surface if each lies this near to the other's tangent plane."""
 
-_RADIUS_MAX = 6
+_IN_FRONT = 1.0001
+"""Share of its inverse depth by which a surface must be nearer to be in front: rounding is none."""
+
+_RADIUS_MAX = 4
 """Half a matching window at the most [pixels]: it is as wide as a slit only down to some nearest distance."""
 
 _PAIRS = ((0, 1), (1, 0), (1, 1), (1, -1))
@@ -119,11 +122,14 @@ class DepthCamera:
         inside = np.s_[pad : pad + rows, pad : pad + columns]
         best, blocked = inverse[inside].copy(), own[inside].copy()
         # A window is as wide as a slit at the depth of the surface, which is nearer than what is seen through it.
+        most = settings.slit_m * float(inverse.max())
         for k in range(1, pad + 1):
+            if k > 1 and min(self._pixel) * (k - 1) >= most:
+                break
             for step in _PAIRS:
                 a, b = self._moved(inverse, step, k), self._moved(inverse, step, -k)
                 mean = 0.5 * (a + b)
-                needed = (mean > best) & (min(self._pixel) * (k - 1) < settings.slit_m * mean)
+                needed = (mean > _IN_FRONT * best) & (min(self._pixel) * (k - 1) < settings.slit_m * mean)
                 near = self._moved(own, step, k) | self._moved(own, step, -k)
                 if k == 1:
                     blocked |= near

@@ -2,8 +2,12 @@
 
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import JointCommand
+from surefoot.bus.topics import PROCESSES
 from surefoot.components.component import Inbox
+from surefoot.components.elevation_map.elevation_map import ElevationMap
+from surefoot.components.stepper import Stepper
 from surefoot.components.topic_buffer import KEPT, TopicBuffers
+from surefoot.config.deployment import Deployment, Run
 
 KEY = "joint/command"
 
@@ -83,3 +87,46 @@ def test_in_real_time_what_falls_behind_is_dropped_until_it_is_a_sequence_of_its
     reader.put(*(packed(seq) for seq in range(20, 40)))
     reader.buffers.deliver_all(reader.inbox)
     assert reader.inbox.latest(KEY).seq == 39
+
+
+class Session:
+    """In place of the bus: says what of each topic is asked for."""
+
+    def __init__(self):
+        self.asked = {}
+
+    def subscribe(self, key, receive):
+        self.asked[key] = "all"
+
+    def newest(self, key):
+        self.asked[key] = "newest"
+        return lambda: None
+
+
+def test_in_real_time_a_reader_gets_the_newest_of_a_stream_or_all_of_it_if_it_says_so():
+    keys = ("hw/depth", "state/estimate", "fsm/reference", "fsm/event")
+    for complete, estimates in (((), "newest"), (("state/estimate",), "all")):
+        session = Session()
+        TopicBuffers(keys, "", complete).connect(session)
+        assert session.asked == {
+            "hw/depth": "newest",
+            "state/estimate": estimates,
+            "fsm/reference": "newest",
+            "fsm/event": "all",
+        }
+
+
+def test_a_whole_stream_is_handed_over_in_order():
+    buffers, inbox = TopicBuffers((KEY,), "", (KEY,)), Inbox((KEY,))
+    for seq in range(10):
+        buffers.put(KEY, packed(seq))
+    buffers.deliver_all(inbox)
+    assert [message.seq for message in inbox.new(KEY)] == list(range(10)) and buffers.bad == 0
+
+
+def test_a_process_asks_for_what_its_component_wants_whole():
+    session = Session()
+    session.serve = lambda key, answer: None
+    seeing = ElevationMap(Deployment(run=Run(vision=True)))
+    Stepper(seeing, session, PROCESSES["elevation_map"], simulated=False).connect()
+    assert session.asked["state/estimate"] == "all"

@@ -63,7 +63,8 @@ def test_an_image_waits_for_the_estimate_of_its_time_and_takes_no_other(image):
     desk.step(0.12, estimates=[estimate(at[1], np.add(POSE, [0.0, 0.0, 0.05])), estimate(at[2], POSE)])
     assert desk.seen == 0.1 and desk.process.trouble == ""
     heights = desk.process.map.patch(AHEAD[0], 3, 3, 0.12).height_m
-    np.testing.assert_allclose(heights, 0.05, atol=0.01)
+    assert np.isfinite(heights).sum() > 30
+    np.testing.assert_allclose(heights[np.isfinite(heights)], 0.05, atol=0.01)
 
 
 def test_an_image_whose_estimate_was_lost_is_dropped_and_said(image):

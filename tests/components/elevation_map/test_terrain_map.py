@@ -203,11 +203,11 @@ def test_one_wrong_frame_changes_nothing_and_a_lasting_change_is_taken_over():
 def test_a_board_that_tilts_and_comes_back_is_followed():
     sight, seeing = Sight(kind="planks", depth=NOISY), fresh_map()
     joint = sight.model.joint("board_1_1").qposadr[0]
-    pose, t = [((0.05, -0.1, HEIGHT), (0.0, 0.0, 0.0))], 0.0
+    swaying, t = [(np.add(p, [0.05, -0.1, 0.0]), rpy) for p, rpy in strolling(20, speed=0.0)], 0.0
     free_end = np.array([0.77, -0.105])  # 16 cm from the hinge
     for angle in (0.0, 0.4, 0.0):
         sight.data.qpos[joint] = angle
-        t = walk(sight, seeing, pose * 15, t0=t + 1.0 / 15.0)
+        t = walk(sight, seeing, swaying, t0=t + 1.0 / 15.0)
         patch = seeing.patch(free_end, 1, 3, t)
         np.testing.assert_allclose(np.nanmean(patch.height_m), -np.tan(angle) * 0.16, atol=0.015)
 
@@ -225,13 +225,13 @@ def test_rays_that_pass_below_a_height_make_it_forgotten():
         frame = plain(*given)
         seen = frame.depth_m.copy()
         p_C = seen[..., None] * _rays(frame)
-        x = given[1][0] + frame.p_BC[0] + np.cos(0.9) * p_C[..., 0] + np.sin(0.9) * p_C[..., 2]
+        x = given[1][0] + frame.p_BC[0] + np.cos(NOISY.pitch) * p_C[..., 0] + np.sin(NOISY.pitch) * p_C[..., 2]
         seen[np.abs(x - 0.95) < 0.035] = 0.0
         return dataclasses.replace(frame, depth_m=seen)
 
     sight.frame = cut_off
     t = walk(sight, seeing, pose * 6, t0=t + 1.0 / 15.0)
-    heights = seeing.patch(np.array([0.95, 0.0]), 3, 10, t).height_m
+    heights = seeing.patch(np.array([0.95, 0.0]), 1, 10, t).height_m
     assert not (heights > 0.06).any()
     # And what the image still shows, or tells nothing of, has stayed.
     assert np.isfinite(seeing.patch(np.array([0.6, 0.0]), 3, 3, t).height_m).all()
@@ -362,11 +362,23 @@ def test_way_and_drift_make_old_heights_uncertain():
     before = seeing.patch(np.array([0.55, 0.0]), 2, 2, t).std_m
     covariance = np.zeros((9, 9))
     covariance[2, 2] = 0.02**2
-    far = estimate(t + 1.0, (0.16, 0.0, HEIGHT), covariance=covariance)
+    far = estimate(t + 1.0, (0.2, 0.0, HEIGHT), covariance=covariance)
     empty = Sight(depth=dataclasses.replace(NOISY, dropout=1.0)).frame(t + 1.0, far.p_WB)
     seeing.see(empty, far, None)
     after = seeing.patch(np.array([0.55, 0.0]), 2, 2, t).std_m
     np.testing.assert_allclose(after, np.hypot(before, 0.02), rtol=0.1)
+
+
+def test_where_feet_stand_on_what_was_seen_the_drift_is_known():
+    sight, seeing = Sight(depth=NOISY), fresh_map()
+    t = walk(sight, seeing, strolling(60, x0=-1.0, speed=0.25))
+    reference, figures = standing(STANCE + [0.2, 0.0, 0.0])
+    covariance = np.zeros((9, 9))
+    for z_std in (0.0, 0.02):
+        covariance[2, 2], t = z_std**2, t + 0.1
+        now = estimate(t, (0.2, 0.0, HEIGHT), **figures, covariance=covariance.copy())
+        seeing.see(sight.frame(t, (0.2, 0.0, HEIGHT)), now, reference)
+    assert seeing.patch(np.array([0.0, 0.0]), 2, 2, t).std_m.max() < 0.01
 
 
 @pytest.mark.parametrize("heights", [True, False])

@@ -53,7 +53,7 @@ def test_on_flat_ground_every_pixel_lies_on_it():
 def test_it_sees_the_next_footholds_and_beyond():
     machine = robot()
     middle = points_W(machine.depth(), machine.data)[:, 40]
-    assert np.nanmin(middle[:, 0]) < 0.42 and 1.2 < np.nanmax(middle[:, 0]) < 1.5
+    assert np.nanmin(middle[:, 0]) < 0.36 and 1.2 < np.nanmax(middle[:, 0]) < 1.5
 
 
 def crossing_W(points, data):
