@@ -163,8 +163,8 @@ class Foam(Approach):
     gap_m: Annotated[float, Within(0.0, 0.02)] = 0.002
     mass: Annotated[float, Within(0.05, 20.0)] = 0.5  # [kg]
     force_n: Load = 110.0  # at which a pad sinks ...
-    sink_min_m: Annotated[float, Within(0.001, 0.024)] = 0.002  # ... this far, drawn between the two
-    sink_max_m: Annotated[float, Within(0.001, 0.024)] = 0.020
+    sink_min_m: Annotated[float, Within(0.001, 0.025)] = 0.002  # ... this far, drawn between the two
+    sink_max_m: Annotated[float, Within(0.001, 0.025)] = 0.025
     relaxation_s: Annotated[float, Within(0.001, 0.1)] = (
         0.025  # a sudden force has sunk it by 63 % after this time
     )

@@ -42,17 +42,19 @@ def test_no_pad_counts_as_collapsed_anywhere():
         drawn = deployment(seed)
         stiffness = np.array([figure[2] for figure in pads(build_scene(drawn, None, 0.6)[0]).values()])
         sinks = 110.0 / stiffness
-        assert (sinks >= 0.002 - 1e-12).all() and (sinks <= 0.025).all()
+        assert (sinks >= 0.002 - 1e-12).all() and (sinks <= 0.025 + 1e-12).all()
         assert sinks.max() - sinks.min() > 0.01
     press, field = PressTest(drawn), build_scene(drawn, None, 0.6)[1]
     xs = np.linspace(field.start_x - 0.02, field.end_x + 0.02, 9)
-    assert (press.label_map(xs, (-0.21, -0.1, 0.0, 0.102, 0.2), 110.0) <= 0.025).all()
+    assert (
+        press.label_map(xs, (-0.21, -0.1, 0.0, 0.102, 0.2), 110.0) <= 0.0265
+    ).all()  # the contact itself yields too
 
 
 def test_the_softest_foam_that_can_be_set_still_bears():
-    softest = deployment(rows=1, columns=1, sink_min_m=0.024, sink_max_m=0.024)
+    softest = deployment(rows=1, columns=1, sink_min_m=0.025, sink_max_m=0.025)
     ((x, y, _),) = pads(build_scene(softest, None, 0.6)[0]).values()
-    assert 0.023 < PressTest(softest).press(x, y, 110.0).displacement_m <= 0.025
+    assert 0.024 < PressTest(softest).press(x, y, 110.0).displacement_m <= 0.0265
 
 
 def test_a_pad_does_not_ring():
