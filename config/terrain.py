@@ -131,7 +131,8 @@ class Tiles(Approach):
     load_max_n: Load = 160.0
     travel_m: Annotated[float, Within(0.02, 1.0)] = 0.11  # from stop to stop
     return_n: Annotated[float, Within(0.1, 100.0)] = 3.0  # push upwards at the lower stop, over the tile's weight
-    damping: Annotated[float, Within(0.0, 1e3)] = 4.0  # [N s/m]
+    damping: Annotated[float, Within(0.0, 1e3)] = 0.5  # [N s/m]
+    brake: Annotated[float, Within(0.0, 1e4)] = 35.0  # of the speed cubed: snaps, yet does not fly [N s^3/m^3]
     frame_height_m: FrameHeight = 0.20  # surface above the ground beneath
 
     def __post_init__(self) -> None:

@@ -2,7 +2,8 @@
 
 At a sinking s the support pushes with F(s) = R + (P + W - R) (1 - s/T)^3: at the upper stop with the load P that
 it gives way at and the tile's weight W, at the lower stop T with the return force R, which brings it up again
-once it is unloaded. Where F falls with s nothing is in balance between the stops: the tile snaps through.
+once it is unloaded. Where F falls with s nothing is in balance between the stops: the tile snaps through. A brake
+that grows with the cube of the speed lets the snap begin at once and yet keeps tiles from flying up under a foot.
 """
 
 from __future__ import annotations
@@ -86,7 +87,7 @@ def _add_tile(
         range=[-tiles.travel_m, -_stop_gives_m(load_n, tiles.mass)],
         stiffness=stiffness,
         springref=reference,
-        damping=[tiles.damping, 0.0, 0.0],
+        damping=[tiles.damping, 0.0, tiles.brake],
         solref_limit=[_STOP_TIME_S, 1.0],
         solimp_limit=[_STOP_IMPEDANCE, _STOP_IMPEDANCE, 0.001, 0.5, 2.0],
     )

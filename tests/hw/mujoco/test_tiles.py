@@ -46,9 +46,10 @@ def test_the_label_flips_at_the_load(load_n):
     all_alike = deployment(rows=3, columns=3, load_min_n=load_n, load_max_n=load_n)
     press = PressTest(all_alike)
     x, y = middle(build_scene(all_alike, None, 0.6)[0], "tile_1_1")
-    assert press.press(x, y, load_n - 2.0).displacement_m < 1.5e-3
+    assert press.press(x, y, load_n - 10.0).displacement_m < 1.5e-3
+    assert press.press(x, y, load_n - 2.0).displacement_m < 0.3 * COLLAPSE_M
     assert press.press(x, y, load_n + 2.0).collapsible
-    assert press.press(x, y, load_n + 20.0).displacement_m > 0.1
+    assert press.press(x, y, load_n + 20.0).displacement_m > 0.06
 
 
 def test_every_tile_flips_at_the_load_it_was_drawn_with():
@@ -80,15 +81,21 @@ def test_the_support_weakens_all_the_way_and_still_lifts_the_tile():
     assert reference < -TILES.travel_m
 
 
-def test_a_tile_comes_up_again_and_then_rests():
-    model = build_scene(deployment(rows=2, columns=2), None, 0.6)[0]
+def test_a_tile_falls_all_the_way_comes_up_again_and_then_rests():
+    model = build_scene(deployment(rows=2, columns=2, load_min_n=100.0, load_max_n=100.0), None, 0.6)[0]
     data = mujoco.MjData(model)
     assert data.ntree_awake == 0
-    data.qpos[0] = -TILES.travel_m
-    mujoco.mj_step(model, data)
+    data.qfrc_applied[0] = -103.0
+    for _ in range(500):
+        mujoco.mj_step(model, data)
+    assert data.qpos[0] < -0.1 and (data.qpos[1:] == 0.0).all()
     assert data.ntree_awake == 1, "its neighbours sleep on"
+    data.qfrc_applied[0] = 0.0
+    fastest = 0.0
     for _ in range(1500):
         mujoco.mj_step(model, data)
+        fastest = max(fastest, data.qvel[0])
+    assert fastest < 2.0, "it does not hit the foot that it held"
     np.testing.assert_allclose(data.qpos, 0.0, atol=1e-4)
     assert data.ntree_awake == 0
 
@@ -120,5 +127,5 @@ def test_of_a_trap_nothing_bears_a_foot():
     ys = np.array([-0.7, -0.3, -0.13, 0.0, 0.1, pitch, 0.5])
     sunk = press.label_map(xs, ys, 40.0)
     assert (sunk > COLLAPSE_M).all()
-    assert np.median(sunk) > 0.1
+    assert np.median(sunk) > 0.05
     assert not press.press(field.start_x - 0.03, 0.13, 150.0).collapsible, "the run-up bears"
