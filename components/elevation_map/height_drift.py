@@ -7,11 +7,16 @@ import numpy as np
 from surefoot.bus.messages import LegStatus, MotionReference, StateEstimate
 from surefoot.components.elevation_map.torus import Torus
 
+_FEET_LEAST = 2
+"""One foot alone may have sunk with its ground."""
+
 
 def height_drift(
     torus: Torus, estimate: StateEstimate, reference: MotionReference | None, foot_radius_m: float, most_m: float
 ) -> float | None:
-    """Median over the trusted stance feet of contact height less map height [m]; None without any.
+    """Median over the trusted stance feet of contact height less map height [m]; None with fewer than two.
+
+    Of an even number the upper one of the two in the middle: ground sinks under a foot, it never rises.
 
     Args:
         torus: its layer `height` is compared; the median of the nine cells at a foot, if most are known.
@@ -30,5 +35,5 @@ def height_drift(
         known = heights[~np.isnan(heights)]
         if len(known) > 4:
             off.append(float(p_W[2] - np.median(known)))
-    near = [each for each in off if abs(each) <= most_m]
-    return float(np.median(near)) if near else None
+    near = sorted(each for each in off if abs(each) <= most_m)
+    return near[len(near) // 2] if len(near) >= _FEET_LEAST else None
