@@ -71,10 +71,14 @@ def _parser() -> argparse.ArgumentParser:
     graded.add_argument("scenario", help="a deployment file, or its name in config/ (flat, planks)")
     graded.add_argument("--seeds", default="0:10", help="first:last+1, or a list such as 0,3,7")
     graded.add_argument("--arm", default="full", help="full, mpc_only, no_support_polygon, ... or NAME=FIGURE")
+    graded.add_argument("--vision", choices=("on", "off"), help="with or without the depth camera and its map")
     graded.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
     graded.add_argument("--jobs", type=int, default=1, help="runs at the same time")
     graded.add_argument("--limit", type=float, default=1200.0, help="simulated seconds that count as a time-out")
     graded.add_argument("--out", type=Path, required=True, help="folder for results.json and summary.md")
+    graded.add_argument(
+        "--fresh", action="store_true", help="do seeds again that the folder's results.json has already"
+    )
     graded.set_defaults(run=_eval)
     run = commands.add_parser(
         "run",
@@ -116,10 +120,19 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _eval(call: argparse.Namespace) -> int:
-    from surefoot.tools.evaluation.evaluate import evaluate, summary
+    from surefoot.tools.evaluation.evaluate import evaluate
+    from surefoot.tools.evaluation.summary import summary
 
     results = evaluate(
-        _deployment_file(call.scenario), _seeds(call.seeds), call.out, call.arm, call.set, call.jobs, call.limit
+        _deployment_file(call.scenario),
+        _seeds(call.seeds),
+        call.out,
+        call.arm,
+        call.set,
+        call.jobs,
+        call.limit,
+        vision=None if call.vision is None else call.vision == "on",
+        fresh=call.fresh,
     )
     print(summary(results))
     print(f"written to {call.out}")

@@ -47,3 +47,8 @@ def notes_itself(scenario, changes, seed, limit_s):
     at_once = len(list(folder.glob("begun-*"))) - len(list(folder.glob("ended-*")))
     (folder / f"ended-{seed}").touch()
     return CROSSED | {"at_once": at_once}
+
+
+def falls(scenario, changes, seed, limit_s):
+    """Seed 1 falls over."""
+    return CROSSED if seed != 1 else CROSSED | {"success": False, "failure": "fell"}
