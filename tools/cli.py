@@ -74,6 +74,12 @@ def _parser() -> argparse.ArgumentParser:
     graded.add_argument("--vision", choices=("on", "off"), help="with or without the depth camera and its map")
     graded.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
     graded.add_argument("--jobs", type=int, default=1, help="runs at the same time")
+    graded.add_argument(
+        "--dask",
+        default="",
+        metavar="ADDRESS",
+        help="run on the workers of this Dask scheduler instead; they need surefoot[cluster] and the same files",
+    )
     graded.add_argument("--limit", type=float, default=1200.0, help="simulated seconds that count as a time-out")
     graded.add_argument("--out", type=Path, required=True, help="folder for results.json and summary.md")
     graded.add_argument(
@@ -133,6 +139,7 @@ def _eval(call: argparse.Namespace) -> int:
         call.limit,
         vision=None if call.vision is None else call.vision == "on",
         fresh=call.fresh,
+        cluster=call.dask,
     )
     print(summary(results))
     print(f"written to {call.out}")

@@ -9,6 +9,7 @@ from pathlib import Path
 from surefoot.config.deployment import load_deployment
 from surefoot.config.typed_toml import ConfigError
 from surefoot.tools.evaluation.arms import TRUE_STATE, arm_overrides
+from surefoot.tools.evaluation.cluster import run_on_cluster
 from surefoot.tools.evaluation.one_run import LIMIT_S, grade
 from surefoot.tools.evaluation.results_file import ResultsFile
 from surefoot.tools.evaluation.workers import Work, run_apart
@@ -34,6 +35,7 @@ def evaluate(
     work: Work = grade_seed,
     vision: bool | None = None,
     fresh: bool = False,
+    cluster: str = "",
 ) -> dict:
     """Grade a deployment file over seeds; writes `results.json` after every run, so nothing is lost.
 
@@ -49,10 +51,11 @@ def evaluate(
         work: does one run.
         vision: with or without the depth camera; None as the deployment says.
         fresh: forget the runs that are there.
+        cluster: address of a Dask scheduler whose workers do the runs instead of this machine; "" none.
 
     Raises:
-        ConfigError: the deployment, an override or the arm is wrong, there is less than one job, or the folder
-            holds the runs of another evaluation.
+        ConfigError: the deployment, an override or the arm is wrong, there is less than one job, the folder
+            holds the runs of another evaluation, or the cluster cannot do them.
     """
     if jobs < 1:
         raise ConfigError(f"--jobs {jobs}: at least one")
@@ -68,7 +71,8 @@ def evaluate(
     if arm == TRUE_STATE:
         work = partial(work, true_state=True)
     calls = [(scenario, changes, seed, limit_s) for seed in missing]
-    for (_, _, seed, _), graded in run_apart(work, calls, jobs):
+    runs = run_on_cluster(work, calls, cluster) if cluster and calls else run_apart(work, calls, jobs)
+    for (_, _, seed, _), graded in runs:
         run = {"seed": seed} | graded
         file.add(run)
         verdict = "success" if run["success"] else run["failure"]

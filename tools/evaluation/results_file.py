@@ -2,31 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-import surefoot
 from surefoot.config.deployment import Deployment
 from surefoot.config.typed_toml import ConfigError, to_table
 from surefoot.tools.evaluation.pooled import is_error
+from surefoot.tools.evaluation.source import source_digest
 from surefoot.tools.evaluation.summary import summary
-
-_MAKES_RESULTS = ("bus", "components", "config", "hw", "tools/evaluation")
-"""The folders whose content decides what a run gives."""
-
-
-def source_digest() -> str:
-    """Digest of the program's own files: runs of two versions of it do not belong into one file."""
-    root = Path(next(iter(surefoot.__path__)))
-    digest = hashlib.sha256()
-    for folder in _MAKES_RESULTS:
-        paths = [path for path in (root / folder).rglob("*") if path.suffix in (".py", ".toml", ".json")]
-        for path in sorted(paths):
-            digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 class ResultsFile:
@@ -66,8 +51,8 @@ class ResultsFile:
         except (ValueError, KeyError, TypeError):
             raise ConfigError(f"{path} is not a file of results; {remedy}") from None
         mine = json.loads(json.dumps(self.results))
-        for key in mine.keys() - {"runs"}:
-            if kept.get(key) != mine[key]:
+        for key in mine:
+            if key != "runs" and kept.get(key) != mine[key]:
                 raise ConfigError(f"{path} holds {_other(key, kept.get(key), mine[key])}; {remedy}")
         self.results["runs"] = [run for run in runs if not is_error(run)]
 
