@@ -86,6 +86,22 @@ def _parser() -> argparse.ArgumentParser:
         "--fresh", action="store_true", help="do seeds again that the folder's results.json has already"
     )
     graded.set_defaults(run=_eval)
+    press = commands.add_parser(
+        "press",
+        help="draw where a terrain gives way under a force",
+        description="Presses a foot-sized sphere into every point of a terrain and draws how far it sinks; "
+        "the line is where it is called a collapse.",
+        epilog="example: surefoot press planks --force 110 --out map.png",
+    )
+    press.add_argument("scenario", help="a deployment file, or its name in config/")
+    press.add_argument("--force", type=float, default=110.0, help="normal force [N]; 110 when not given")
+    press.add_argument("--step", type=float, default=0.01, help="from point to point [m]; 0.01 when not given")
+    press.add_argument("--seed", type=int, help="of what the terrain leaves to chance")
+    press.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
+    press.add_argument(
+        "--out", type=Path, required=True, help="the picture, a .png; its figures go beside as .csv"
+    )
+    press.set_defaults(run=_press)
     run = commands.add_parser(
         "run",
         help="start every process of a deployment",
@@ -144,6 +160,22 @@ def _eval(call: argparse.Namespace) -> int:
     print(summary(results))
     print(f"written to {call.out}")
     return 0 if all(run["success"] for run in results["runs"]) else 1
+
+
+def _press(call: argparse.Namespace) -> int:
+    from surefoot.config.deployment import load_deployment
+    from surefoot.tools.evaluation.label_map import check_drawing, draw, press_terrain
+
+    check_drawing(call.out)
+    seed = [] if call.seed is None else [f"hw.seed={call.seed}"]
+    scenario = _deployment_file(call.scenario)
+    deployment = load_deployment(scenario, [*call.set, *seed])
+    label = press_terrain(deployment, call.force, call.step)
+    title = f"{scenario.stem}, seed {deployment.hw.seed}: pressed with {call.force:g} N"
+    draw(label, title, call.out)
+    share = 100.0 * label.collapsible.mean()
+    print(f"{share:.0f} % of the points give way; drawn to {call.out}, figures in {call.out.with_suffix('.csv')}")
+    return 0
 
 
 def _run(call: argparse.Namespace) -> int:
