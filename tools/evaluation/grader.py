@@ -24,7 +24,7 @@ from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
 from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
 from surefoot.hw.mujoco.terrain import Field
-from surefoot.tools.evaluation.drop import WITH_DROP, Drop
+from surefoot.tools.evaluation.drops import Drops
 from surefoot.tools.evaluation.outcome import BELOW_M, CARRIES_N, Outcome
 
 ENVELOPE_FORCES = 6
@@ -58,10 +58,9 @@ class Grader:
     def __init__(self, deployment: Deployment, field: Field):
         """For a deployment whose terrain lies in `field`."""
         robot = deployment.load_robot()
-        kind = deployment.terrain.kind
         self._press = lru_cache(maxsize=None)(PressTest(deployment).press)
-        self._drop = Drop(deployment) if kind in WITH_DROP else None
-        self.outcome = Outcome(kind, field, robot.foot.radius, self._verdict)
+        self._drops = Drops(field, robot.foot.radius)
+        self.outcome = Outcome(deployment.terrain.row, field, robot.foot.radius, self._verdict)
         self._truth: SimTruth | None = None
         self._estimate: StateEstimate | None = None
         self._reference: MotionReference | None = None
@@ -241,7 +240,7 @@ class Grader:
             self._certified_n[leg], self._carried_n[leg] = self._borne_n, 0.0
 
     def _measure_edge(self, p_WF: np.ndarray) -> None:
-        distance = self._drop.distance(p_WF) if self._drop is not None else None
+        distance = self._drops.distance(p_WF)
         if distance is not None:
             self.edge_distance.append(distance)
 

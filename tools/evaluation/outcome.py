@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -14,8 +14,6 @@ STUCK_S = 5.0  # without contact change or support below the surface
 BELOW_M = 0.06  # a foot whose centre is this far below the surface is in a hole
 CARRIES_N = 10.0  # a foot that bears this much stands
 _STOPPED_S = 3.0  # a machine that rests this long waits for a new direction
-_TO_GOAL = ("flat",)  # kinds of terrain without anything to cross
-_TO_STOP = ("trap",)  # kinds on which nothing ahead holds
 
 GivesWay = Callable[[np.ndarray, float], bool]
 """Whether the ground at a point (2,) of the world collapses under a normal force [N]."""
@@ -24,8 +22,8 @@ GivesWay = Callable[[np.ndarray, float], bool]
 class Outcome:
     """Success or failure of one run.
 
-    On flat ground success is the goal; on a trap it is to come to rest, four feet on ground that bears them, short
-    of the end; elsewhere it is four feet past the terrain's end.
+    Where there is nothing to cross success is the goal; where there is a trap it is to come to rest, four feet on
+    ground that bears them, short of the end; elsewhere it is four feet past the terrain's end.
 
     Attributes:
         failure: why the run has failed, or "".
@@ -34,9 +32,10 @@ class Outcome:
         reason: what the state machine said when the run ended at rest.
     """
 
-    def __init__(self, terrain: str, field: Field, foot_radius: float, gives_way: GivesWay):
-        """For a kind of terrain that lies in `field`."""
-        self._terrain, self._field = terrain, field
+    def __init__(self, row: Sequence[str], field: Field, foot_radius: float, gives_way: GivesWay):
+        """For kinds of terrain in a row, none for flat ground, that lie in `field`."""
+        self._crosses, self._stops = bool(row), "trap" in row
+        self._field = field
         self._end_x = field.end_x + foot_radius
         self._gives_way = gives_way
         self.failure, self.touching, self.reason = "", "", ""
@@ -52,7 +51,7 @@ class Outcome:
         """The run is decided."""
         reference = self._reference
         done = reference is not None and (reference.finished or reference.t - self._moving_t > _STOPPED_S)
-        return bool(self.failure) or (self.passed and self._terrain not in _TO_GOAL) or done
+        return bool(self.failure) or (self.passed and self._crosses) or done
 
     def on_reference(self, reference: MotionReference) -> None:
         """Take in what the state machine asks for."""
@@ -81,12 +80,11 @@ class Outcome:
             self.reason = reference.reason
         if self.failure:
             return
-        if self._terrain in _TO_STOP and (self.passed or finished):
+        if self._stops and (self.passed or finished):
             self.failure = "crossed"
-        elif self._terrain in _TO_STOP:
-            good = self._rests_safely()
-            self.failure = "" if good else self._ended_short(t, limit_s)
-        elif not self.passed and not (finished and self._terrain in _TO_GOAL):
+        elif self._stops:
+            self.failure = "" if self._rests_safely() else self._ended_short(t, limit_s)
+        elif not self.passed and not (finished and not self._crosses):
             self.failure = self._ended_short(t, limit_s)
 
     @staticmethod

@@ -532,16 +532,12 @@ def test_violations_are_the_largest_of_the_valid_policies():
 # Holes, the map, the drop -------------------------------------------------------------------------------
 
 
-class Sloped(Field):
-    """Rises by 10 cm a metre."""
-
-    def level(self, x):
-        return 0.1 * x
+UPHILL = Field(0.0, END_X, ((0.0, 0.0), (3.0, 0.3)))
 
 
 def test_a_hole_is_below_the_surface_that_was_built_there():
     for z, stuck in ((0.15, False), (0.13, True)):  # the surface is at 20 cm
-        told = Told(ON_PLANKS, Sloped(0.0, END_X))
+        told = Told(ON_PLANKS, UPHILL)
         told.truth(p_WF=FEET + 2.0 * UP)
         told.foot(1, (2.0, 0.0, z))
         told.truth(after=5.1)
@@ -588,7 +584,7 @@ class Trapped(Told):
     def __init__(self):
         super().__init__(ON_PLANKS)
         grader = self.grader
-        grader.outcome = Outcome("trap", FIELD, ROBOT.foot.radius, grader._verdict)
+        grader.outcome = Outcome(("planks", "trap"), FIELD, ROBOT.foot.radius, grader._verdict)
 
     def rest(self, seconds=3.1, **figures):
         """Stand still, told why."""
@@ -659,3 +655,11 @@ def test_a_fall_is_a_fall_on_a_trap_too():
     told.truth(quat_WB=turned(0.0, 0))
     told.rest()
     assert told.results["failure"] == "fell"
+
+
+def test_an_accepted_foothold_beside_a_drop_has_its_distance():
+    told = Told(FLAT, Field(0.0, END_X, ((0.0, 0.0), (0.5, 0.0), (0.5, -0.03), (2.0, -0.03))))
+    for x, z in ((0.47, 0.0), (0.1, 0.0), (0.53, -0.03), (0.49, 0.0)):
+        told.probe(1, (x, 0.0, z + ROBOT.foot.radius))
+        told.accept(1)
+    assert told.results["edge_distance_m"] == [pytest.approx(0.03), pytest.approx(0.01)]
