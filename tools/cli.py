@@ -7,7 +7,9 @@ import os
 import sys
 from pathlib import Path
 
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+from surefoot.tools.blas_threads import BLAS_THREADS
+
+for _name in BLAS_THREADS:
     # Before numpy is imported: its threads would fight the control chain for the cores.
     os.environ.setdefault(_name, "1")
 
@@ -68,9 +70,11 @@ def _parser() -> argparse.ArgumentParser:
         help="grade the stack in lockstep",
         epilog="example: surefoot eval planks --seeds 0:10 --jobs 2 --out out",
     )
-    graded.add_argument("scenario", help="a deployment file, or its name in config/ (flat, planks)")
+    graded.add_argument("scenario", help="a deployment file, or its name in config/ (flat, planks, rocks, ...)")
     graded.add_argument("--seeds", default="0:10", help="first:last+1, or a list such as 0,3,7")
-    graded.add_argument("--arm", default="full", help="full, mpc_only, no_support_polygon, ... or NAME=FIGURE")
+    graded.add_argument(
+        "--arm", default="full", help="full, mpc_only, true_state, ... or NAME=FIGURE; a wrong one lists all"
+    )
     graded.add_argument("--vision", choices=("on", "off"), help="with or without the depth camera and its map")
     graded.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
     graded.add_argument("--jobs", type=int, default=1, help="runs at the same time")

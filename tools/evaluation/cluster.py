@@ -8,13 +8,12 @@ from concurrent.futures import CancelledError
 from uuid import uuid4
 
 from surefoot.config.typed_toml import ConfigError
+from surefoot.tools.blas_threads import BLAS_THREADS
 from surefoot.tools.evaluation.own_process import run_alone
 from surefoot.tools.evaluation.source import source_digest
 from surefoot.tools.evaluation.workers import Work, failed
 
 _CONNECT_S = 10.0
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-"""How many threads a sum is split over decides its last digits: a run there must not differ from one here."""
 
 
 def run_on_cluster(work: Work, calls: Sequence[tuple], address: str) -> Iterator[tuple[tuple, dict]]:
@@ -61,7 +60,8 @@ class _Tasks:
     def __init__(self, client, work: Work, calls: Sequence[tuple]):
         self.left = len(calls)
         self._client, self._work = client, work
-        self._threads = {name: os.environ.get(name, "1") for name in _THREADS}
+        # Over how many threads a sum is split decides its last digits: a run there must not differ from one here.
+        self._threads = {name: os.environ.get(name, "1") for name in BLAS_THREADS}
         self._waiting = list(calls)
         self._running: dict[object, tuple] = {}
 

@@ -43,7 +43,8 @@ class Mark:
         name: what is judged.
         asked: in words.
         measure: judges the runs.
-        grounds: scenarios, or kinds of terrain, that it is asked on; () any, where it has something to judge.
+        grounds: scenarios that it is asked on, or kinds of terrain for a scenario that no mark names; () any that
+            gives it something to judge.
         arms: that it is asked of.
         reference: of the base while probing (`fsm.base_reference`) that it is asked with; "" any.
     """
@@ -60,11 +61,12 @@ def judge(results: dict) -> list[Row]:
     """The marks that apply to the scenario and arm of a `results.json`, each with what was got."""
     pooled = Pooled(results["runs"])
     config = results.get("config", {})
-    places = {results["scenario"], config.get("terrain", {}).get("kind", "")}
+    known = {ground for mark in MARKS for ground in mark.grounds}
+    ground = results["scenario"] if results["scenario"] in known else config.get("terrain", {}).get("kind", "")
     reference = config.get("fsm", {}).get("base_reference", "")
     rows = []
     for mark in MARKS:
-        if results["arm"] not in mark.arms or (mark.grounds and not places & set(mark.grounds)):
+        if results["arm"] not in mark.arms or (mark.grounds and ground not in mark.grounds):
             continue
         if mark.reference and mark.reference != reference:
             continue

@@ -147,6 +147,11 @@ def test_marks_go_by_the_terrain_whatever_the_file_is_called():
     assert [each.mark for each in judge(head)] == ["stops", "missed collapses"]
 
 
+def test_planks_with_boards_missing_are_not_asked_for_the_planks_time():
+    head = results(run(0), scenario="planks_missing") | {"config": of_kind("planks")}
+    assert [each.mark for each in judge(head)] == ["success", "missed collapses"]
+
+
 def test_a_general_mark_without_anything_to_judge_is_left_out():
     marks = {each.mark for each in judge(results(run(0), scenario="slope"))}
     assert marks == {"missed collapses"}

@@ -25,7 +25,9 @@ def one_sleeps(scenario, changes, seed, limit_s):
     """Seed 1 sleeps, with a mark before and after; the others wait until it does."""
     asleep = scenario.parent / "asleep"
     if seed == 1:
-        asleep.write_text(str(os.getpid()))
+        told = scenario.parent / "asleep.part"
+        told.write_text(str(os.getpid()))
+        told.replace(asleep)
         time.sleep(20.0)
         (scenario.parent / "awake").touch()
     while not asleep.exists():
