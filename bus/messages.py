@@ -337,6 +337,7 @@ class SimTruth(Message):
     v_WB_W: np.ndarray = array(3, doc="", unit="m/s")
     omega_WB_B: np.ndarray = array(3, doc="", unit="rad/s")
     q: np.ndarray = array(12, doc="", unit="rad")
+    dq: np.ndarray = array(12, doc="", unit="rad/s")
     tau: np.ndarray = array(12, doc="motor torque applied", unit="N m")
     com_W: np.ndarray = array(3, doc="centre of mass of the true, varied robot", unit="m")
     p_WF: np.ndarray = array(4, 3, doc="foot centres", unit="m")

@@ -7,7 +7,9 @@ import os
 import sys
 from pathlib import Path
 
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+from surefoot.tools.blas_threads import BLAS_THREADS
+
+for _name in BLAS_THREADS:
     # Before numpy is imported: its threads would fight the control chain for the cores.
     os.environ.setdefault(_name, "1")
 
@@ -68,14 +70,42 @@ def _parser() -> argparse.ArgumentParser:
         help="grade the stack in lockstep",
         epilog="example: surefoot eval planks --seeds 0:10 --jobs 2 --out out",
     )
-    graded.add_argument("scenario", help="a deployment file, or its name in config/ (flat, planks)")
+    graded.add_argument("scenario", help="a deployment file, or its name in config/ (flat, planks, rocks, ...)")
     graded.add_argument("--seeds", default="0:10", help="first:last+1, or a list such as 0,3,7")
-    graded.add_argument("--arm", default="full", help="full, mpc_only, no_support_polygon, ... or NAME=FIGURE")
+    graded.add_argument(
+        "--arm", default="full", help="full, mpc_only, true_state, ... or NAME=FIGURE; a wrong one lists all"
+    )
+    graded.add_argument("--vision", choices=("on", "off"), help="with or without the depth camera and its map")
     graded.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
     graded.add_argument("--jobs", type=int, default=1, help="runs at the same time")
+    graded.add_argument(
+        "--dask",
+        default="",
+        metavar="ADDRESS",
+        help="run on the workers of this Dask scheduler instead; they need surefoot[cluster] and the same files",
+    )
     graded.add_argument("--limit", type=float, default=1200.0, help="simulated seconds that count as a time-out")
     graded.add_argument("--out", type=Path, required=True, help="folder for results.json and summary.md")
+    graded.add_argument(
+        "--fresh", action="store_true", help="do seeds again that the folder's results.json has already"
+    )
     graded.set_defaults(run=_eval)
+    press = commands.add_parser(
+        "press",
+        help="draw where a terrain gives way under a force",
+        description="Presses a foot-sized sphere into every point of a terrain and draws how far it sinks; "
+        "the line is where it is called a collapse.",
+        epilog="example: surefoot press planks --force 110 --out map.png",
+    )
+    press.add_argument("scenario", help="a deployment file, or its name in config/")
+    press.add_argument("--force", type=float, default=110.0, help="normal force [N]; 110 when not given")
+    press.add_argument("--step", type=float, default=0.01, help="from point to point [m]; 0.01 when not given")
+    press.add_argument("--seed", type=int, help="of what the terrain leaves to chance")
+    press.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
+    press.add_argument(
+        "--out", type=Path, required=True, help="the picture, a .png; its figures go beside as .csv"
+    )
+    press.set_defaults(run=_press)
     run = commands.add_parser(
         "run",
         help="start every process of a deployment",
@@ -116,14 +146,40 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _eval(call: argparse.Namespace) -> int:
-    from surefoot.tools.evaluation.evaluate import evaluate, summary
+    from surefoot.tools.evaluation.evaluate import evaluate
+    from surefoot.tools.evaluation.summary import summary
 
     results = evaluate(
-        _deployment_file(call.scenario), _seeds(call.seeds), call.out, call.arm, call.set, call.jobs, call.limit
+        _deployment_file(call.scenario),
+        _seeds(call.seeds),
+        call.out,
+        call.arm,
+        call.set,
+        call.jobs,
+        call.limit,
+        vision=None if call.vision is None else call.vision == "on",
+        fresh=call.fresh,
+        cluster=call.dask,
     )
     print(summary(results))
     print(f"written to {call.out}")
     return 0 if all(run["success"] for run in results["runs"]) else 1
+
+
+def _press(call: argparse.Namespace) -> int:
+    from surefoot.config.deployment import load_deployment
+    from surefoot.tools.evaluation.label_map import check_drawing, draw, press_terrain
+
+    check_drawing(call.out)
+    seed = [] if call.seed is None else [f"hw.seed={call.seed}"]
+    scenario = _deployment_file(call.scenario)
+    deployment = load_deployment(scenario, [*call.set, *seed])
+    label = press_terrain(deployment, call.force, call.step)
+    title = f"{scenario.stem}, seed {deployment.hw.seed}: pressed with {call.force:g} N"
+    draw(label, title, call.out)
+    share = 100.0 * label.collapsible.mean()
+    print(f"{share:.0f} % of the points give way; drawn to {call.out}, figures in {call.out.with_suffix('.csv')}")
+    return 0
 
 
 def _run(call: argparse.Namespace) -> int:

@@ -117,6 +117,7 @@ class MujocoRobot:
             v_WB_W=data.qvel[:3].copy(),
             omega_WB_B=data.qvel[3:6].copy(),
             q=data.qpos[7:19].copy(),
+            dq=data.qvel[6:18].copy(),
             tau=self._tau.copy(),
             com_W=data.subtree_com[self._trunk_body].copy(),
             p_WF=data.geom_xpos[self._foot_geoms].copy(),

@@ -23,10 +23,19 @@ from surefoot.tools.cli import main
         (["eval", "flat", "--seeds", "x", "--out", "out"], "--seeds 'x'"),
         (["eval", "flat", "--arm", "half", "--out", "out"], "no arm 'half'; there are full"),
         (["eval", "flat", "--arm", "threshold=high", "--out", "out"], "fsm.collapse_m = 'high': expected float"),
+        (
+            ["eval", "flat", "--dask", "nonsense://here", "--out", "{tmp}"],
+            "--dask nonsense://here: no Dask scheduler",
+        ),
+        (["press", "planks", "--out", "map.jpg"], "--out map.jpg: a picture is a .png"),
+        (["press", "planks", "--force", "0.5", "--out", "map.png"], "--force 0.5: above 1 N"),
+        (["press", "planks", "--force", "nan", "--out", "map.png"], "--force nan"),
+        (["press", "planks", "--step", "0", "--out", "map.png"], "--step 0: allowed 0.002 to 0.2 m"),
+        (["press", "nowhere", "--out", "map.png"], "no such file: nowhere"),
     ],
 )
-def test_a_wrong_call_is_answered_by_what_would_be_right(call, words, capsys):
-    assert main(call) == 2
+def test_a_wrong_call_is_answered_by_what_would_be_right(call, words, capsys, tmp_path):
+    assert main([word.format(tmp=tmp_path) for word in call]) == 2
     assert words in capsys.readouterr().err
 
 

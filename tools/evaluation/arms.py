@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from surefoot.config.typed_toml import ConfigError
 
+TRUE_STATE = "true_state"
+"""The arm whose estimator is ideal: no setting, but another component."""
+
 ARMS = {
     "full": (),
     "mpc_only": ("fsm.probing=false", "fsm.support_polygon=false"),
     "no_support_polygon": ("fsm.support_polygon=false",),
     "no_probe_around": ("fsm.probe_around=false",),
+    TRUE_STATE: (),
 }
 """Overrides of each arm without a figure."""
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from surefoot.bus.message import Message
 from surefoot.bus.messages import (
+    FootholdRegions,
     FsmEvent,
     JointCommand,
     LegStatus,
@@ -22,13 +23,12 @@ from surefoot.components.fsm.support_triangle import SupportTriangle
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
 from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
+from surefoot.hw.mujoco.terrain import Field
+from surefoot.tools.evaluation.drops import Drops
+from surefoot.tools.evaluation.outcome import BELOW_M, CARRIES_N, Outcome
 
-FALL_TILT = np.deg2rad(45.0)
-STUCK_S = 5.0  # without contact change or support below the surface
 ENVELOPE_FORCES = 6
-_CARRIES_N = 10.0  # a foot that bears this much stands
-_STOPPED_S = 3.0  # a machine that rests this long waits for a new direction
-_BELOW_M = 0.06  # a foot this far below the surface is in a hole
+_OUT_M = 0.02  # a foot that has been in a hole is out of it once it is less than this below the surface
 _TRUTH_DT = 1.0 / TOPICS["sim/truth"].rate_hz
 
 
@@ -51,17 +51,16 @@ class Grader:
     """Collects the measures of `results.json` while a run goes on.
 
     Attributes:
-        failure: why the run has failed, or "".
-        passed: all four feet are past the terrain's end.
+        outcome: whether the run is decided, and how.
+        counts: what is counted, by its name in `results.json`.
     """
 
-    def __init__(self, deployment: Deployment, end_x: float):
+    def __init__(self, deployment: Deployment, field: Field):
+        """For a deployment whose terrain lies in `field`."""
         robot = deployment.load_robot()
-        self._end_x = end_x + robot.foot.radius
-        self._terrain = deployment.terrain.kind
         self._press = lru_cache(maxsize=None)(PressTest(deployment).press)
-        self.failure, self.passed, self.touching = "", False, ""
-        self._moving_t = 0.0  # of the latest reference that did not ask to rest
+        self._drops = Drops(field, robot.foot.radius)
+        self.outcome = Outcome(deployment.terrain.row, field, robot.foot.radius, self._verdict)
         self._truth: SimTruth | None = None
         self._estimate: StateEstimate | None = None
         self._reference: MotionReference | None = None
@@ -77,7 +76,7 @@ class Grader:
         self._borne_n = robot.mass * GRAVITY / 4
         self._certified_n = [self._borne_n] * 4
         self._carried_n = np.zeros(4)  # largest force on each foot since it was accepted
-        self._low_since: dict[int, float] = {}
+        self._in_hole: set[int] = set()
         self._lifting: tuple[int, float] | None = None
         self._held: list[tuple[float, ...]] = []
         self.counts = dict.fromkeys(
@@ -85,8 +84,17 @@ class Grader:
             0,
         )
         self.counts |= dict.fromkeys(
-            ("late_collapses", "late_false_alarms", "true_positives", "false_negatives"), 0
+            (
+                "late_collapses",
+                "late_false_alarms",
+                "true_positives",
+                "false_negatives",
+                "in_hole",
+                "rejected_by_map",
+            ),
+            0,
         )
+        self.edge_distance: list[float] = []
         self.displacement: list[float] = []
         self.unload: list[float] = []
         self.margin = np.inf
@@ -105,30 +113,18 @@ class Grader:
             self._estimate = message
         elif isinstance(message, MotionReference):
             self._reference = message
-            if message.state != "STOPPED":
-                self._moving_t = message.t
+            self.outcome.on_reference(message)
         elif isinstance(message, Policy) and message.valid:
             self._policy = message
             for name, value in zip(message.constraint, message.violation, strict=True):
                 self.violation[name] = max(self.violation.get(name, 0.0), float(value))
         elif isinstance(message, JointCommand):
             self._command = message
+        elif isinstance(message, FootholdRegions):
+            leg = self._reference.leg if self._reference is not None else -1
+            self.counts["rejected_by_map"] += leg >= 0 and not message.safe[leg]
         elif isinstance(message, FsmEvent):
             self._on_event(message)
-
-    @property
-    def over(self) -> bool:
-        """The run is decided."""
-        reference = self._reference
-        done = reference is not None and (reference.finished or reference.t - self._moving_t > _STOPPED_S)
-        return bool(self.failure) or (self.passed and self._terrain != "flat") or done
-
-    def finish(self, t: float, limit_s: float) -> None:
-        """Name the failure of a run that ended without success."""
-        reference = self._reference
-        walked = self._terrain == "flat" and reference is not None and reference.finished
-        if not self.failure and not self.passed and not walked:
-            self.failure = "timeout" if t >= limit_s else "stopped"
 
     # Truth ----------------------------------------------------------------------------------------------
 
@@ -141,26 +137,23 @@ class Grader:
         self.saturated_s += _TRUTH_DT * truth.saturated
         if self._start is None:
             self._start = truth
-        if tilt > FALL_TILT:
-            self.failure = self.failure or "fell"
-        elif any(part in truth.body_contact for part in ("trunk", "hip", "thigh")):
-            self.failure, self.touching = self.failure or "contact", truth.body_contact
-        beyond = (truth.p_WF[:, 0] > self._end_x) & (truth.force_W[:, 2] > _CARRIES_N)
-        self.passed = self.passed or bool(beyond.all())
-        self._watch_holes(truth)
+        self.outcome.on_truth(truth, float(tilt))
+        self._count_holes(truth)
         self._watch_accepted(truth)
         if self._estimate is not None:
             self._compare(truth, self._estimate)
         if self._reference is not None:
             self._watch_probe(truth, self._reference)
 
-    def _watch_holes(self, truth: SimTruth) -> None:
-        """A foot stuck below the surface."""
+    def _count_holes(self, truth: SimTruth) -> None:
+        """Feet that go into a hole, on their way to a candidate or where they stand; each time counts."""
         for leg in range(4):
-            if truth.p_WF[leg, 2] > -_BELOW_M:
-                self._low_since.pop(leg, None)
-            elif truth.t - self._low_since.setdefault(leg, truth.t) > STUCK_S:
-                self.failure = self.failure or "stuck"
+            depth = self.outcome.depth(truth, leg)
+            if depth >= BELOW_M and leg not in self._in_hole:
+                self._in_hole.add(leg)
+                self.counts["in_hole"] += 1
+            elif depth < _OUT_M:
+                self._in_hole.discard(leg)
 
     def _watch_accepted(self, truth: SimTruth) -> None:
         self._carried_n = np.maximum(self._carried_n, truth.force_W[:, 2])
@@ -183,7 +176,7 @@ class Grader:
         """CoM margin from lift-off to the end of probing; forces while one is held; the unloading."""
         if self._lifting is not None:
             lifted, since = self._lifting
-            if truth.force_W[lifted, 2] < _CARRIES_N:
+            if truth.force_W[lifted, 2] < CARRIES_N:
                 self.unload.append(truth.t - since)
                 self._lifting = None
         leg = reference.leg
@@ -241,9 +234,15 @@ class Grader:
             self._label_late_collapse(leg, truth)
         elif event.kind == "accepted":
             counts["footholds"] += 1
+            self._measure_edge(truth.p_WF[leg])
             self._accepted_W[leg] = truth.p_WF[leg].copy()
             self._sunk.discard(leg)
             self._certified_n[leg], self._carried_n[leg] = self._borne_n, 0.0
+
+    def _measure_edge(self, p_WF: np.ndarray) -> None:
+        distance = self._drops.distance(p_WF)
+        if distance is not None:
+            self.edge_distance.append(distance)
 
     def _largest_asked(self) -> float:
         """Largest normal force of the envelope; the entry before it is what was there when the foot touched."""
@@ -300,22 +299,26 @@ class Grader:
         `precision` is the share of all collapses called, in probes and later, that the press test bears out;
         `recall` the share of the probed points that fail the press test whose collapse was called.
         """
-        counts, truth, start = self.counts, self._truth, self._start
+        counts, truth, start, outcome = self.counts, self._truth, self._start, self.outcome
+        footholds = counts["footholds"]
         found, wrong, lost = counts["true_positives"], counts["false_alarms"], counts["false_negatives"]
         right = found + counts["late_collapses"] - counts["late_false_alarms"]
         distance = float(truth.p_WB[0] - start.p_WB[0]) if truth is not None and start is not None else 0.0
         drift = float(np.hypot(*self._estimate_error[:2])) / abs(distance) if abs(distance) > 0.2 else None
         n = max(self._squares[2], 1.0)
         return {
-            "success": not self.failure,
-            "failure": self.failure or None,
-            "body_contact": self.touching or None,
+            "success": not outcome.failure,
+            "failure": outcome.failure or None,
+            "stop_reason": outcome.reason or None,
+            "body_contact": outcome.touching or None,
             "distance_m": distance,
             **counts,
+            "candidates_per_foothold": counts["candidates_tried"] / footholds if footholds else None,
             "precision": right / (right + wrong) if right + wrong else None,
             "recall": found / (found + lost) if found + lost else None,
             "displacement_at_detection_m": self.displacement,
             "unload_s": self.unload,
+            "edge_distance_m": self.edge_distance,
             "min_support_margin_m": None if np.isinf(self.margin) else float(self.margin),
             "max_tilt_rad": self.tilt,
             "probe_force": self.probe_force,

@@ -14,6 +14,8 @@ from surefoot.components.io.io import Io
 from surefoot.components.lockstep import Lockstep
 from surefoot.config.deployment import Deployment
 from surefoot.tools.evaluation.grader import Grader
+from surefoot.tools.evaluation.stopwatch import Stopwatch
+from surefoot.tools.evaluation.true_state import TrueState
 
 LIMIT_S = 1200.0
 """Simulated time after which a run is a failure."""
@@ -21,25 +23,41 @@ LIMIT_S = 1200.0
 _PROGRESS_S = 10.0
 
 
-def grade(deployment: Deployment, limit_s: float = LIMIT_S, progress: Callable[[str], None] | None = None) -> dict:
+Progress = Callable[[str], None]
+"""Told now and then, in a line, how a run goes."""
+
+
+def grade(
+    deployment: Deployment,
+    limit_s: float = LIMIT_S,
+    progress: Progress | None = None,
+    true_state: bool = False,
+) -> dict:
     """Run a deployment until it is decided; a crash is reported as the run's failure.
+
+    Args:
+        deployment: what is run.
+        limit_s: simulated time that counts as a time-out.
+        progress: is told how it goes.
+        true_state: the estimator is ideal.
 
     Returns:
         One entry of `runs` in `results.json`.
     """
     seed = deployment.hw.seed
     try:
-        return {"seed": seed} | _grade(deployment, limit_s, progress)
+        return {"seed": seed} | _grade(deployment, limit_s, progress, true_state)
     except Exception as error:  # one run's crash must not take the others with it
         where = traceback.extract_tb(error.__traceback__)[-1]
         reason = f"error: {type(error).__name__}: {error} ({os.path.basename(where.filename)}:{where.lineno})"
         return {"seed": seed, "success": False, "failure": reason}
 
 
-def _grade(deployment: Deployment, limit_s: float, progress: Callable[[str], None] | None) -> dict:
-    stack = Lockstep(deployment)
+def _grade(deployment: Deployment, limit_s: float, progress: Progress | None, true_state: bool) -> dict:
+    stack = Lockstep(deployment, given=[TrueState(deployment)] if true_state else [])
     io = cast(Io, stack.components["io"])  # what the registry has under this name
-    grader = Grader(deployment, io.robot.field.end_x)
+    grader = Grader(deployment, io.robot.field)
+    physics = Stopwatch(io.robot)
     stack.listen(grader)
     stack.command(deployment.run.command)
     begun, told = perf_counter(), 0.0
@@ -50,24 +68,23 @@ def _grade(deployment: Deployment, limit_s: float, progress: Callable[[str], Non
             told = stack.t
             done = grader.counts
             progress(f"{stack.t:.0f} s, {done['footholds']} footholds, {done['collapses_detected']} collapses")
-        return grader.over
+        return grader.outcome.over
 
     stack.run(limit_s, decided)
     wall = perf_counter() - begun
-    grader.finish(stack.t, limit_s)
-    timing = {
-        name: {
-            "p50": float(np.percentile(executor.step_ms, 50)),
-            "p99": float(np.percentile(executor.step_ms, 99)),
-            "max": float(np.max(executor.step_ms)),
-        }
-        for name, executor in stack.executors.items()
-        if executor.step_ms
-    }
+    grader.outcome.finish(stack.t, limit_s)
+    step_ms = {name: executor.step_ms for name, executor in stack.executors.items()}
     return {
         "sim_time_s": stack.t,
         "wall_time_s": wall,
         "real_time_factor": stack.t / wall,
         **grader.results(),
-        "timing_ms": timing,
+        "timing_ms": {
+            name: _percentiles(ms) for name, ms in (step_ms | {"physics": physics.step_ms}).items() if ms
+        },
     }
+
+
+def _percentiles(values: list[float]) -> dict[str, float]:
+    p50, p99 = np.percentile(values, [50, 99]).tolist()
+    return {"p50": p50, "p99": p99, "max": max(values)}

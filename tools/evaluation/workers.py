@@ -41,12 +41,21 @@ def run_apart(work: Work, calls: Sequence[tuple], jobs: int) -> Iterator[tuple[t
             process.join()
 
 
-def _tell(mouth: Connection, work: Work, call: tuple) -> None:
+def do_or_tell(work: Work, call: tuple) -> dict:
+    """The result of `work(*call)`; what it raises is told as this run's failure."""
     try:
-        result = work(*call)
-    except Exception as error:  # told as this run's failure
-        result = _failed(f"{type(error).__name__}: {error}")
-    mouth.send(result)
+        return work(*call)
+    except Exception as error:
+        return failed(f"{type(error).__name__}: {error}")
+
+
+def failed(why: str) -> dict:
+    """The entry of a run that has no result."""
+    return {"success": False, "failure": f"error: {why}"}
+
+
+def _tell(mouth: Connection, work: Work, call: tuple) -> None:
+    mouth.send(do_or_tell(work, call))
 
 
 def _hear(ear: Connection, process: SpawnProcess) -> dict:
@@ -56,8 +65,4 @@ def _hear(ear: Connection, process: SpawnProcess) -> dict:
         except (EOFError, OSError):
             result = None
     process.join()
-    return _failed(f"worker died (exit code {process.exitcode})") if result is None else result
-
-
-def _failed(why: str) -> dict:
-    return {"success": False, "failure": f"error: {why}"}
+    return failed(f"worker died (exit code {process.exitcode})") if result is None else result

@@ -8,15 +8,17 @@ import works
 
 from surefoot.config.deployment import Deployment
 from surefoot.config.typed_toml import ConfigError
-from surefoot.tools.evaluation import one_run
-from surefoot.tools.evaluation.evaluate import evaluate, summary
+from surefoot.tools.evaluation import one_run, results_file
+from surefoot.tools.evaluation.evaluate import evaluate
+from surefoot.tools.evaluation.summary import summary
 from surefoot.tools.evaluation.workers import run_apart
 
 RUN_KEYS = {
     "seed", "success", "failure", "sim_time_s", "wall_time_s", "real_time_factor", "distance_m", "footholds",
     "probes", "candidates_tried", "collapses_detected", "missed_collapses", "false_alarms", "precision", "recall",
     "displacement_at_detection_m", "unload_s", "min_support_margin_m", "max_tilt_rad", "probe_force", "estimator",
-    "timing_ms", "mpc_violation_max", "torque_saturation_s", "energy_j",
+    "timing_ms", "mpc_violation_max", "torque_saturation_s", "energy_j", "in_hole", "rejected_by_map",
+    "candidates_per_foothold", "edge_distance_m", "stop_reason",
 }  # fmt: skip
 OF_THE_MACHINE = {"wall_time_s", "real_time_factor", "timing_ms"}
 LIMIT_S = 3.0  # the first probe has begun to press
@@ -59,7 +61,7 @@ def test_a_run_that_raises_is_its_own_failure(scenario):
 
 
 def test_a_crash_inside_the_stack_is_the_runs_failure_and_says_where(monkeypatch):
-    def broken(deployment):
+    def broken(deployment, given):
         raise ZeroDivisionError("no ground")
 
     monkeypatch.setattr(one_run, "Lockstep", broken)
@@ -92,8 +94,84 @@ def test_arm_and_overrides_reach_every_run_and_the_file(scenario):
     assert len({run["pid"] for run in results["runs"]}) == 2
     assert results["scenario"] == "level" and results["arm"] == "threshold=0.02" and results["version"]
     assert results["config"]["fsm"]["collapse_m"] == 0.02 and results["config"]["fsm"]["goal_m"] == 0.3
-    assert sorted(said) == ["seed 2: crossed, 12 s simulated", "seed 4: crossed, 12 s simulated"]
+    assert sorted(said) == ["seed 2: success, 12 s simulated", "seed 4: success, 12 s simulated"]
     assert (scenario.parent / "out" / "summary.md").read_text() == summary(results)
+
+
+def test_vision_is_as_asked_or_else_as_the_deployment_says(scenario):
+    for vision, asked in ((True, ["run.vision=true"]), (False, ["run.vision=false"]), (None, [])):
+        results, _ = told(scenario, [0], works.crosses, vision=vision, fresh=True)
+        assert results["vision"] is (vision is True) and results["config"]["run"]["vision"] is (vision is True)
+        assert results["runs"][0]["asked"] == ["level", *asked, 1200.0]
+    scenario.write_text("[run]\nvision = true\n")
+    assert told(scenario, [0], works.crosses, fresh=True)[0]["vision"] is True
+
+
+# Once more into the same folder -------------------------------------------------------------------------
+
+
+def test_seeds_that_are_there_are_not_done_again(scenario):
+    first, _ = told(scenario, [0, 3], works.crosses)
+    said = []
+    out = scenario.parent / "out"
+    again = evaluate(scenario, range(5), out, say=said.append, work=works.crosses)
+    assert [run["seed"] for run in again["runs"]] == [0, 1, 2, 3, 4]
+    assert [again["runs"][seed] for seed in (0, 3)] == first["runs"]  # with the process that did them then
+    assert said[0] == "2 of 5 seeds are there already" and len(said) == 4
+    assert json.loads((out / "results.json").read_text()) == again
+    fewer = evaluate(scenario, [1], out, say=said.append, work=works.one_raises)
+    assert fewer == again and len(said) == 5
+
+
+def test_a_run_that_ended_with_an_error_is_done_again_and_a_failure_of_the_robot_is_not(scenario):
+    told(scenario, range(3), works.one_raises)
+    out = scenario.parent / "out"
+    mended = evaluate(scenario, range(3), out, say=lambda line: None, work=works.falls)
+    assert failures(mended) == {0: None, 1: "fell", 2: None}
+    assert failures(evaluate(scenario, range(3), out, say=lambda line: None, work=works.crosses)) == failures(
+        mended
+    )
+
+
+def test_fresh_forgets_what_is_there(scenario):
+    told(scenario, [0, 3], works.falls)
+    results, said = told(scenario, [3], works.crosses, fresh=True)
+    assert failures(results) == {3: None} and len(said) == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"arm": "mpc_only"}, "runs with arm = 'full', asked is 'mpc_only'"),
+        ({"vision": True}, "runs with vision = False, asked is True"),
+        ({"overrides": ["fsm.goal_m=0.7"]}, r"runs with config.fsm.goal_m = [0-9.]+, asked is 0.7"),
+        ({"limit_s": 5.0}, r"runs with limit_s = 1200.0, asked is 5.0"),
+    ],
+)
+def test_runs_of_another_evaluation_are_neither_mixed_nor_lost(scenario, change, words):
+    told(scenario, [0], works.crosses)
+    file = scenario.parent / "out" / "results.json"
+    before = file.read_text()
+    with pytest.raises(ConfigError, match=words) as refused:
+        evaluate(scenario, [1], file.parent, work=works.crosses, **change)
+    assert "--fresh forgets" in str(refused.value) and file.read_text() == before
+
+
+def test_runs_of_another_program_are_not_taken_for_this_ones(scenario, monkeypatch):
+    told(scenario, [0], works.crosses)
+    monkeypatch.setattr(results_file, "source_digest", lambda: "changed")
+    with pytest.raises(ConfigError, match="runs of another state of the program"):
+        evaluate(scenario, [1], scenario.parent / "out", work=works.crosses)
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"runs": 3}', "{}"])
+def test_a_file_that_is_none_of_ours_is_left_alone(scenario, text):
+    out = scenario.parent / "out"
+    out.mkdir()
+    (out / "results.json").write_text(text)
+    with pytest.raises(ConfigError, match="is not a file of results; --fresh"):
+        evaluate(scenario, [0], out, work=works.crosses)
+    assert (out / "results.json").read_text() == text
 
 
 def test_a_wrong_call_runs_nothing(scenario):
@@ -107,79 +185,6 @@ def test_a_wrong_call_runs_nothing(scenario):
     assert not out.exists()
 
 
-# The summary of hand-made runs --------------------------------------------------------------------------
-
-
-def run(seed, **figures):
-    """A whole run; what is not given is dull."""
-    forces = {key: [] for key in ("force_index", "asked_n", "mpc_n", "wbc_n", "estimated_n", "true_n")}
-    dull = {
-        "seed": seed, "success": True, "failure": None, "sim_time_s": 100.0, "real_time_factor": 0.8,
-        "footholds": 10, "probes": 50, "collapses_detected": 4, "missed_collapses": 0, "late_collapses": 0,
-        "false_alarms": 0, "min_support_margin_m": 0.041, "max_tilt_rad": 0.1,
-        "displacement_at_detection_m": [], "unload_s": [], "probe_force": forces,
-        "probe_rmse_n": {"true_vs_mpc": 1.26, "estimate_vs_true": 2.14},
-        "estimator": {"xy_drift_per_m": 0.0042, "z_error_max_m": 0.01, "tilt_error_max_rad": 0.01},
-    }  # fmt: skip
-    return dull | figures
-
-
-def summed(*runs):
-    return summary({"scenario": "planks", "arm": "full", "runs": list(runs)})
-
-
-def test_the_summary_counts_runs_footholds_and_probes():
-    text = summed(
-        run(0, missed_collapses=1, late_collapses=2, false_alarms=3),
-        run(1, success=False, failure="fell", missed_collapses=2, min_support_margin_m=None, sim_time_s=14.4),
-        {"seed": 2, "success": False, "failure": "error: worker died (exit code -9)"},
-    )
-    assert "| 0 | crossed | 100 | 10 | 4 | 1 | 2 | 3 | 41 | 0.10 | 0.80 |" in text
-    assert "| 1 | fell | 14 | 10 | 4 | 2 | 0 | 0 | - | 0.10 | 0.80 |" in text
-    assert "| 2 | error: worker died (exit code -9) |" in text
-    assert "- success 1 of 3\n" in text
-    assert "- missed collapses 3 of 20 accepted footholds\n" in text
-    assert "- false alarms 3 of 100 probes\n" in text
-    assert len({line.count("|") for line in text.splitlines() if line.startswith("|")}) == 1
-
-
-def test_the_summary_lists_what_each_run_measured():
-    still = {"xy_drift_per_m": None, "z_error_max_m": 0.0, "tilt_error_max_rad": 0.02}
-    text = summed(run(0), run(1, estimator=still, probe_rmse_n={"true_vs_mpc": 9.0, "estimate_vs_true": 7.0}))
-    assert "- true against MPC's force, RMSE N: 1.3, 9.0\n" in text
-    assert "- estimate against truth, RMSE N: 2.1, 7.0\n" in text
-    assert "- drift of x, y per metre: 0.004\n" in text
-    assert "- largest tilt error, degrees: 0.6, 1.1\n" in text
-    assert "displacement" not in text and "unloaded" not in text and "peak" not in text
-
-
-def test_displacement_and_unloading_are_over_all_collapses():
-    text = summed(
-        run(0, displacement_at_detection_m=[0.030, 0.031], unload_s=[0.02, 0.03]),
-        run(1, displacement_at_detection_m=[0.040], unload_s=[0.13]),
-    )
-    # Between order statistics numpy interpolates: 95 % of three is 3.1 + 0.9 * 0.9.
-    assert "- displacement at detection, cm: median 3.1, p95 3.9\n" in text
-    assert "- unloaded after detection, ms: median 30, max 130\n" in text
-
-
-def test_peaks_are_those_of_the_last_force_whatever_comes_before_and_after():
-    # A probe that breaks off at 70 N, one to 90 N, one that begins higher than the last ended, and the next run.
-    first = {
-        "force_index": [3, 4, 0, 4, 5, 0, 5],
-        "asked_n": [60.0, 70.0, 40.0, 80.0, 90.0, 95.0, 100.0],
-        "true_n": [10.0, 10.0, 10.0, 10.0, 81.0, 10.0, 98.0],
-    }
-    second = {"force_index": [5], "asked_n": [200.0], "true_n": [200.0]}
-    text = summed(run(0, probe_force=first), run(1, probe_force=second))
-    assert "- true force over the envelope's peak: median 0.98, least 0.90 of 3 probes\n" in text
-
-
-def test_nothing_but_errors_is_summed_up_too():
-    text = summed({"seed": 0, "success": False, "failure": "error: worker died (exit code -9)"})
-    assert "worker died" in text and "success" not in text
-
-
 # True runs ----------------------------------------------------------------------------------------------
 
 
@@ -191,11 +196,15 @@ def test_true_runs_fill_every_field_and_do_not_depend_on_the_jobs(scenario):
         return results
 
     results = graded(1)
+    assert results["vision"] is False and results["limit_s"] == LIMIT_S
     for each in results["runs"]:
         assert each.keys() >= RUN_KEYS
         assert each["failure"] == "timeout" and each["sim_time_s"] == pytest.approx(LIMIT_S)
         assert each["probes"] > 0 and each["probe_force"]["true_n"]
-        assert {"p50", "p99", "max"} == each["timing_ms"]["mpc"].keys()
+        for part in ("mpc", "trajopt", "wbc", "estimator", "physics"):
+            assert {"p50", "p99", "max"} == each["timing_ms"][part].keys()
+        # The plant steps inside io's step.
+        assert 0.0 < each["timing_ms"]["physics"]["p50"] < each["timing_ms"]["io"]["p50"]
         assert {"xy_drift_per_m", "z_error_max_m", "tilt_error_max_rad"} == each["estimator"].keys()
         assert {"asked_n", "mpc_n", "wbc_n", "estimated_n", "true_n"} <= each["probe_force"].keys()
     assert results["runs"][0]["probe_force"] != results["runs"][1]["probe_force"]
@@ -204,3 +213,11 @@ def test_true_runs_fill_every_field_and_do_not_depend_on_the_jobs(scenario):
         return [{key: run[key] for key in run.keys() - OF_THE_MACHINE} for run in results["runs"]]
 
     assert of_the_robot(results) == of_the_robot(graded(2))
+
+
+def test_the_true_state_arm_walks_on_the_truth(scenario):
+    results = evaluate(scenario, [0], scenario.parent / "out", arm="true_state", limit_s=LIMIT_S)
+    run = results["runs"][0]
+    assert run["probes"] > 0 and run["failure"] == "timeout"
+    # One cycle old, and by nothing else away from the truth: the filter is 2 N away.
+    assert run["probe_rmse_n"]["estimate_vs_true"] < 0.5 and run["estimator"]["z_error_max_m"] < 2e-3

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from surefoot.bus.messages import (
+    FootholdRegions,
     FsmEvent,
     JointCommand,
     LegStatus,
@@ -18,7 +19,9 @@ from surefoot.components.robot_model import LegKinematics
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import load_robot
 from surefoot.config.terrain import Planks, Terrain
+from surefoot.hw.mujoco.terrain import Field
 from surefoot.tools.evaluation.grader import Grader
+from surefoot.tools.evaluation.outcome import Outcome
 
 ROBOT = load_robot("aliengo")
 FLAT, ON_PLANKS = Deployment(), Deployment(terrain=Terrain(kind="planks"))
@@ -27,6 +30,7 @@ HEIGHT = 0.4
 FEET = HEIGHT * UP + LegKinematics(ROBOT).position(np.tile(ROBOT.nominal.stand_q, (4, 1)))
 FEET[:, 2] = ROBOT.foot.radius
 END_X = 1.0
+FIELD = Field(0.0, END_X)
 DT = 0.002  # of the truth [s]
 ENVELOPE = (40.0, 60.0, 70.0, 80.0, 90.0, 100.0)
 DWELL_S = 0.1
@@ -47,8 +51,8 @@ def turned(angle, axis):
 class Told:
     """A grader, and the messages it is told one after the other; what is not given stays as it was."""
 
-    def __init__(self, deployment=FLAT):
-        self.grader = Grader(deployment, END_X)
+    def __init__(self, deployment=FLAT, field=FIELD):
+        self.grader = Grader(deployment, field)
         self.t = 0.0
         level = np.array([1.0, 0.0, 0.0, 0.0])
         quarter = np.tile(60.0 * UP, (4, 1))
@@ -121,16 +125,16 @@ class Told:
 def test_a_tilt_of_45_degrees_is_a_fall(axis):
     told = Told()
     told.truth(quat_WB=turned(np.deg2rad(44.0), axis))
-    assert told.grader.failure == "" and not told.grader.over
+    assert told.grader.outcome.failure == "" and not told.grader.outcome.over
     told.truth(quat_WB=turned(np.deg2rad(-46.0), axis))
-    assert told.grader.failure == "fell" and told.grader.over
+    assert told.grader.outcome.failure == "fell" and told.grader.outcome.over
     assert told.results["max_tilt_rad"] == pytest.approx(np.deg2rad(46.0))
 
 
 def test_turning_on_the_spot_is_not_a_tilt():
     told = Told()
     told.truth(quat_WB=turned(2.0, 2))
-    assert told.grader.failure == "" and told.results["max_tilt_rad"] < 1e-6
+    assert told.grader.outcome.failure == "" and told.results["max_tilt_rad"] < 1e-6
 
 
 @pytest.mark.parametrize("part", ["trunk", "FL_calf RR_hip", "RL_thigh"])
@@ -152,16 +156,16 @@ def test_a_foot_five_seconds_below_the_surface_is_stuck():
     for z, seconds in ((-0.05, 20.0), (-0.07, 4.9), (0.02, 0.1), (-0.07, 4.9)):
         told.foot(3, (0.0, 0.0, z))
         told.truth(after=seconds)
-    assert told.grader.failure == ""
+    assert told.grader.outcome.failure == ""
     told.truth(after=0.2)
-    assert told.grader.failure == "stuck"
+    assert told.grader.outcome.failure == "stuck"
 
 
 def test_the_first_failure_stands():
     told = Told()
     told.truth(quat_WB=turned(1.0, 0))
     told.truth(quat_WB=turned(0.0, 0), body_contact="trunk")
-    told.grader.finish(told.t, told.t)
+    told.grader.outcome.finish(told.t, told.t)
     assert told.results["failure"] == "fell" and not told.results["success"]
 
 
@@ -175,12 +179,12 @@ def test_the_terrain_is_crossed_when_four_feet_stand_beyond_it():
     one_short[2, 0] = END_X
     told.truth(p_WF=one_short)
     told.truth(p_WF=beyond - [2e-3, 0.0, 0.0])  # the foot's own radius is still on it
-    assert not told.grader.passed
+    assert not told.grader.outcome.passed
     told.truth(p_WF=beyond, force_W=np.outer([60.0, 60.0, 60.0, 5.0], UP))
-    assert not told.grader.passed
+    assert not told.grader.outcome.passed
     told.truth(force_W=np.tile(60.0 * UP, (4, 1)))
-    assert told.grader.passed and told.grader.over
-    told.grader.finish(told.t, 1200.0)
+    assert told.grader.outcome.passed and told.grader.outcome.over
+    told.grader.outcome.finish(told.t, 1200.0)
     assert told.results["success"] and told.results["failure"] is None
 
 
@@ -188,9 +192,9 @@ def test_on_flat_ground_the_whole_walk_is_graded():
     told = Told()
     told.truth(p_WF=FEET + [5.0, 0.0, 0.0])
     told.reference()
-    assert told.grader.passed and not told.grader.over
+    assert told.grader.outcome.passed and not told.grader.outcome.over
     told.reference(state="STOPPED", finished=True)
-    assert told.grader.over
+    assert told.grader.outcome.over
 
 
 @pytest.mark.parametrize(
@@ -207,7 +211,7 @@ def test_a_run_that_ends_short_says_why(deployment, finished, t, failure):
     told = Told(deployment)
     told.truth()
     told.reference(state="STOPPED", finished=finished)
-    told.grader.finish(t, 100.0)
+    told.grader.outcome.finish(t, 100.0)
     assert told.results["failure"] == failure and told.results["success"] == (failure is None)
 
 
@@ -223,9 +227,9 @@ def test_a_machine_that_rests_three_seconds_has_stopped(interval_s):
     rest(2.9)
     told.reference(state="PRE_OPT")
     rest(2.9)
-    assert not told.grader.over
+    assert not told.grader.outcome.over
     rest(0.2)
-    assert told.grader.over
+    assert told.grader.outcome.over
 
 
 # Footholds ----------------------------------------------------------------------------------------------
@@ -523,3 +527,139 @@ def test_violations_are_the_largest_of_the_valid_policies():
         names = ("support_polygon", "friction_cone")
         told.grader("mpc/policy", Policy(valid=valid, constraint=names, violation=np.array(figures)))
     assert told.results["mpc_violation_max"] == {"support_polygon": 0.3, "friction_cone": 5.0}
+
+
+# Holes, the map, the drop -------------------------------------------------------------------------------
+
+
+UPHILL = Field(0.0, END_X, ((0.0, 0.0), (3.0, 0.3)))
+
+
+def test_a_hole_is_below_the_surface_that_was_built_there():
+    for z, stuck in ((0.15, False), (0.13, True)):  # the surface is at 20 cm
+        told = Told(ON_PLANKS, UPHILL)
+        told.truth(p_WF=FEET + 2.0 * UP)
+        told.foot(1, (2.0, 0.0, z))
+        told.truth(after=5.1)
+        assert told.grader.outcome.failure == ("stuck" if stuck else "")
+        assert told.counts["in_hole"] == stuck
+
+
+def test_every_time_that_a_foot_goes_into_a_hole_counts_once():
+    told = Told(ON_PLANKS)
+    for z in (-0.05, -0.061, -0.059, -0.07, -0.03, -0.07):  # it never came out
+        told.foot(2, (0.5, 0.0, z))
+    assert told.counts["in_hole"] == 1
+    told.foot(2, (0.5, 0.0, 0.02))
+    told.foot(2, (0.5, 0.0, -0.07))
+    told.foot(3, (0.5, 0.0, -0.07))
+    assert told.counts["in_hole"] == 3
+
+
+def test_the_map_rejects_the_foothold_of_the_leg_that_is_to_move():
+    told = Told()
+    told.truth()
+    told.grader("foothold/regions", FootholdRegions(safe=np.zeros(4, bool)))  # nobody moves
+    for leg, safe in ((2, [True, True, False, True]), (2, [False, False, True, False])):
+        told.reference(state="SEND", leg=leg)
+        told.grader("foothold/regions", FootholdRegions(safe=np.array(safe)))
+    assert told.counts["rejected_by_map"] == 1
+
+
+def test_candidates_are_told_for_each_foothold():
+    told = Told()
+    assert told.results["candidates_per_foothold"] is None
+    for accepted in (False, True, True):
+        told.probe(0, FEET[0, :2])
+        told.accept(0) if accepted else told.collapse(0)
+    assert told.results["candidates_per_foothold"] == pytest.approx(1.5)
+
+
+# A trap -------------------------------------------------------------------------------------------------
+
+
+class Trapped(Told):
+    """On ground of which a press test is to say what it says of the planks."""
+
+    def __init__(self):
+        super().__init__(ON_PLANKS)
+        grader = self.grader
+        grader.outcome = Outcome(("planks", "trap"), FIELD, ROBOT.foot.radius, grader._verdict)
+
+    def rest(self, seconds=3.1, **figures):
+        """Stand still, told why."""
+        self.reference(state="STOPPED", reason="no safe foothold", **figures)
+        self.truth(after=seconds)
+        self.reference()
+        self.grader.outcome.finish(self.t, 100.0)
+
+
+def test_on_a_trap_it_is_a_success_to_stand_on_what_holds():
+    told = Trapped()
+    told.truth()
+    told.rest()
+    assert told.grader.outcome.over and told.results["success"]
+    assert told.results["stop_reason"] == "no safe foothold"
+
+
+@pytest.mark.parametrize(("place", "good"), [(GOOD, True), (BAD, False), (WEAK, False)])
+def test_on_a_trap_every_foot_has_to_stand_on_ground_that_bears_what_it_bears(place, good):
+    told = Trapped()
+    force_W = np.tile(60.0 * UP, (4, 1))
+    force_W[1] = 120.0 * UP  # WEAK bears 40 N
+    told.foot(1, place, force_W=force_W)
+    told.rest()
+    assert told.results["failure"] == (None if good else "stopped")
+
+
+def test_what_a_foot_bore_before_the_robot_came_to_rest_is_no_matter():
+    told = Trapped()
+    force_W = np.tile(60.0 * UP, (4, 1))
+    force_W[1] = 120.0 * UP
+    told.truth(force_W=force_W)
+    told.reference(state="RETURN_SAFE")
+    force_W = force_W.copy()
+    force_W[1] = 30.0 * UP
+    told.foot(1, WEAK, force_W=force_W)
+    told.rest()
+    assert told.results["success"]
+
+
+def test_on_a_trap_three_feet_or_a_short_rest_are_not_enough():
+    told = Trapped()
+    lifted = np.tile(60.0 * UP, (4, 1))
+    lifted[3] = 0.0
+    told.truth(force_W=lifted)
+    told.rest()
+    assert told.results["failure"] == "stopped"
+    told = Trapped()
+    told.truth()
+    told.rest(2.0)
+    assert told.results["failure"] == "stopped"
+
+
+def test_who_crosses_a_trap_has_not_stopped():
+    told = Trapped()
+    told.truth(p_WF=FEET + [2.0, 0.0, 0.0])
+    told.rest()
+    assert told.results["failure"] == "crossed"
+    told = Trapped()
+    told.truth()
+    told.rest(finished=True)
+    assert told.results["failure"] == "crossed"
+
+
+def test_a_fall_is_a_fall_on_a_trap_too():
+    told = Trapped()
+    told.truth(quat_WB=turned(1.0, 0))
+    told.truth(quat_WB=turned(0.0, 0))
+    told.rest()
+    assert told.results["failure"] == "fell"
+
+
+def test_an_accepted_foothold_beside_a_drop_has_its_distance():
+    told = Told(FLAT, Field(0.0, END_X, ((0.0, 0.0), (0.5, 0.0), (0.5, -0.03), (2.0, -0.03))))
+    for x, z in ((0.47, 0.0), (0.1, 0.0), (0.53, -0.03), (0.49, 0.0)):
+        told.probe(1, (x, 0.0, z + ROBOT.foot.radius))
+        told.accept(1)
+    assert told.results["edge_distance_m"] == [pytest.approx(0.03), pytest.approx(0.01)]

@@ -5,6 +5,7 @@ import signal
 import time
 
 CROSSED = {"success": True, "failure": None, "sim_time_s": 12.0}
+STATE = "as it was loaded"
 
 
 def crosses(scenario, changes, seed, limit_s):
@@ -24,7 +25,9 @@ def one_sleeps(scenario, changes, seed, limit_s):
     """Seed 1 sleeps, with a mark before and after; the others wait until it does."""
     asleep = scenario.parent / "asleep"
     if seed == 1:
-        asleep.touch()
+        told = scenario.parent / "asleep.part"
+        told.write_text(str(os.getpid()))
+        told.replace(asleep)
         time.sleep(20.0)
         (scenario.parent / "awake").touch()
     while not asleep.exists():
@@ -47,3 +50,36 @@ def notes_itself(scenario, changes, seed, limit_s):
     at_once = len(list(folder.glob("begun-*"))) - len(list(folder.glob("ended-*")))
     (folder / f"ended-{seed}").touch()
     return CROSSED | {"at_once": at_once}
+
+
+def falls(scenario, changes, seed, limit_s):
+    """Seed 1 falls over."""
+    return CROSSED if seed != 1 else CROSSED | {"success": False, "failure": "fell"}
+
+
+def one_kills_its_worker(scenario, changes, seed, limit_s):
+    """Seed 1 takes the process that waits for it with it."""
+    if seed == 1:
+        os.kill(os.getppid(), signal.SIGKILL)
+    return CROSSED
+
+
+def later_ones_sleep(scenario, changes, seed, limit_s):
+    """All but seed 0 take longer than anybody waits."""
+    if seed:
+        time.sleep(30.0)
+    return CROSSED
+
+
+def other_digest():
+    """In whose process it was changed says something else than in the workers'."""
+    return STATE
+
+
+def lives(pid):
+    """Whether a process is there."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
