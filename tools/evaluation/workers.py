@@ -8,6 +8,8 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 from typing import cast
 
+from surefoot.components.process_end import ProcessEnd
+
 Work = Callable[..., dict]
 """Makes one entry of `runs` in `results.json`; importable, since a fresh process has to find it."""
 
@@ -37,7 +39,7 @@ def run_apart(work: Work, calls: Sequence[tuple], jobs: int) -> Iterator[tuple[t
                 yield call, _hear(ear, process)
     finally:
         for _, process in running.values():
-            process.terminate()
+            process.kill()
             process.join()
 
 
@@ -55,6 +57,7 @@ def failed(why: str) -> dict:
 
 
 def _tell(mouth: Connection, work: Work, call: tuple) -> None:
+    ProcessEnd()  # does not outlive who waits for the result, not even one killed without warning
     mouth.send(do_or_tell(work, call))
 
 

@@ -1,7 +1,11 @@
 """Many runs: each costs only itself, and what is written is what was measured."""
 
 import json
+import os
+import subprocess
+import sys
 from multiprocessing import active_children
+from time import monotonic, sleep
 
 import pytest
 import works
@@ -82,6 +86,30 @@ def test_who_stops_listening_leaves_no_worker_behind(scenario):
     runs.close()
     assert (scenario.parent / "asleep").exists() and not (scenario.parent / "awake").exists()
     assert not active_children()
+
+
+def test_no_worker_outlives_an_evaluation_that_is_killed(scenario):
+    code = "\n".join(
+        (
+            "import sys, pathlib, works",
+            "from surefoot.tools.evaluation.workers import run_apart",
+            "if __name__ == '__main__':",
+            "    call = (pathlib.Path(sys.argv[1]), [], 1, 1.0)",
+            "    list(run_apart(works.one_sleeps, [call], 1))",
+        )
+    )
+    script = scenario.parent / "evaluation.py"
+    script.write_text(code)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    with subprocess.Popen([sys.executable, str(script), str(scenario)], env=environment) as evaluation:
+        asleep, deadline = scenario.parent / "asleep", monotonic() + 30.0
+        while not asleep.exists() and monotonic() < deadline:
+            sleep(0.05)
+        worker = int(asleep.read_text())
+        evaluation.kill()
+    while works.lives(worker) and monotonic() < deadline:
+        sleep(0.05)
+    assert not works.lives(worker) and not (scenario.parent / "awake").exists()
 
 
 def test_arm_and_overrides_reach_every_run_and_the_file(scenario):
