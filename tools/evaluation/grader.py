@@ -72,9 +72,10 @@ class Grader:
         self._accepted_W: dict[int, np.ndarray] = {}
         self._sunk: set[int] = set()
         self._probe: _Probe | None = None
-        # Until a foot has been probed: the run-up has to bear what a standing foot puts on it.
-        self._borne_n = robot.mass * GRAVITY / 4
-        self._certified_n = [self._borne_n] * 4
+        # Without a probe the ground has to bear what a standing foot puts on it.
+        self._standing_n = robot.mass * GRAVITY / 4
+        self._borne_n = 0.0  # largest force asked in this candidate's probes that were borne to their end
+        self._certified_n = [self._standing_n] * 4
         self._carried_n = np.zeros(4)  # largest force on each foot since it was accepted
         self._in_hole: set[int] = set()
         self._lifting: tuple[int, float] | None = None
@@ -213,6 +214,7 @@ class Grader:
         leg = event.leg
         if event.kind == "contact":
             self._touched_W[leg] = truth.p_WF[leg].copy()
+            self._borne_n *= event.around > 0
         elif event.kind == "transition" and event.state == "PROBE":
             counts["probes"] += 1
             counts["candidates_tried"] += event.around == 0
@@ -237,7 +239,9 @@ class Grader:
             self._measure_edge(truth.p_WF[leg])
             self._accepted_W[leg] = truth.p_WF[leg].copy()
             self._sunk.discard(leg)
-            self._certified_n[leg], self._carried_n[leg] = self._borne_n, 0.0
+            # The map may have certified the foothold before: then nothing was probed.
+            self._certified_n[leg] = self._borne_n or event.held_n or self._standing_n
+            self._carried_n[leg] = 0.0
 
     def _measure_edge(self, p_WF: np.ndarray) -> None:
         distance = self._drops.distance(p_WF)

@@ -99,9 +99,9 @@ class Told:
         for index in range(forces):
             self.event("force_held", leg, force_index=index, asked_n=envelope[index])
 
-    def accept(self, leg):
+    def accept(self, leg, **figures):
         self.status(leg, LegStatus.STANCE, "PRE_OPT", probe_leg=-1)
-        self.event("accepted", leg)
+        self.event("accepted", leg, **figures)
         self.event("transition", leg, state="PRE_OPT")
 
     def collapse(self, leg):
@@ -374,6 +374,19 @@ def test_a_late_collapse_under_more_than_was_certified_is_judged_by_what_the_foo
         force_W[1, 2] = carried
         told.foot(1, WEAK, force_W=force_W)
         told.foot(1, WEAK, force_W=np.zeros((4, 3)))  # it has fallen off already when it is noticed
+        told.event("late_collapse", 1)
+        assert told.counts["false_alarms"] == false
+
+
+def test_a_foothold_that_the_map_had_certified_is_judged_by_that():
+    for held, false in ((40.0, 1), (120.0, 0)):
+        told = Told(ON_PLANKS)
+        told.probe(0, GOOD)
+        told.event("transition", 0, state="PROBE_AROUND")
+        told.accept(0)
+        told.foot(1, WEAK)
+        told.event("contact", 1)
+        told.accept(1, held_n=held)
         told.event("late_collapse", 1)
         assert told.counts["false_alarms"] == false
 
