@@ -106,6 +106,19 @@ def _parser() -> argparse.ArgumentParser:
         "--out", type=Path, required=True, help="the picture, a .png; its figures go beside as .csv"
     )
     press.set_defaults(run=_press)
+    reproduced = commands.add_parser(
+        "reproduce",
+        help="run the paper's experiments and write one page with its figures",
+        epilog="example: surefoot reproduce out --quick. Stopped with Ctrl-C, the same call goes on where it was.",
+    )
+    reproduced.add_argument("out", type=Path, help="folder for index.html, the figures and the data")
+    reproduced.add_argument("--quick", action="store_true", help="a short version, in minutes")
+    reproduced.add_argument("--jobs", type=int, default=1, help="runs at the same time")
+    reproduced.add_argument("--seeds", default="", help="of every experiment; without it, each one's own")
+    reproduced.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="of config/reproduce.py: flat_goal_m=0.6"
+    )
+    reproduced.set_defaults(run=_reproduce)
     run = commands.add_parser(
         "run",
         help="start every process of a deployment",
@@ -179,6 +192,34 @@ def _press(call: argparse.Namespace) -> int:
     draw(label, title, call.out)
     share = 100.0 * label.collapsible.mean()
     print(f"{share:.0f} % of the points give way; drawn to {call.out}, figures in {call.out.with_suffix('.csv')}")
+    return 0
+
+
+def _reproduce(call: argparse.Namespace) -> int:
+    from rich.console import Console
+
+    from surefoot.config.reproduce import Reproduce
+    from surefoot.config.typed_toml import build, with_override
+    from surefoot.tools.reproduce.experiment import Plan
+    from surefoot.tools.reproduce.reproduce import reproduce
+
+    table: dict = {}
+    for assignment in call.set:
+        table = with_override(table, assignment)
+    seeds = tuple(_seeds(call.seeds)) if call.seeds else ()
+    console = Console(soft_wrap=True, highlight=False)
+    words = ["surefoot", "reproduce", str(call.out), *(["--quick"] if call.quick else [])]
+    words += [*(["--seeds", call.seeds] if call.seeds else []), *(f"--set {each}" for each in call.set)]
+
+    def say(line: str) -> None:
+        console.print(line, markup=False)
+
+    plan = Plan(build(Reproduce, table), seeds, call.quick)
+    try:
+        reproduce(call.out, plan, call.jobs, say, " ".join(words))
+    except KeyboardInterrupt:
+        say("stopped; the same call goes on from here")
+        raise
     return 0
 
 

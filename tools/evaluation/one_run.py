@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import cast
 
 import numpy as np
 
 from surefoot.components.io.io import Io
-from surefoot.components.lockstep import Lockstep
+from surefoot.components.lockstep import Listener, Lockstep
 from surefoot.config.deployment import Deployment
 from surefoot.tools.evaluation.grader import Grader
 from surefoot.tools.evaluation.stopwatch import Stopwatch
@@ -32,6 +32,7 @@ def grade(
     limit_s: float = LIMIT_S,
     progress: Progress | None = None,
     true_state: bool = False,
+    listeners: Sequence[Listener] = (),
 ) -> dict:
     """Run a deployment until it is decided; a crash is reported as the run's failure.
 
@@ -40,25 +41,34 @@ def grade(
         limit_s: simulated time that counts as a time-out.
         progress: is told how it goes.
         true_state: the estimator is ideal.
+        listeners: hear every message of the run.
 
     Returns:
         One entry of `runs` in `results.json`.
     """
     seed = deployment.hw.seed
     try:
-        return {"seed": seed} | _grade(deployment, limit_s, progress, true_state)
+        return {"seed": seed} | _grade(deployment, limit_s, progress, true_state, listeners)
     except Exception as error:  # one run's crash must not take the others with it
         where = traceback.extract_tb(error.__traceback__)[-1]
         reason = f"error: {type(error).__name__}: {error} ({os.path.basename(where.filename)}:{where.lineno})"
         return {"seed": seed, "success": False, "failure": reason}
 
 
-def _grade(deployment: Deployment, limit_s: float, progress: Progress | None, true_state: bool) -> dict:
+def _grade(
+    deployment: Deployment,
+    limit_s: float,
+    progress: Progress | None,
+    true_state: bool,
+    listeners: Sequence[Listener],
+) -> dict:
     stack = Lockstep(deployment, given=[TrueState(deployment)] if true_state else [])
     io = cast(Io, stack.components["io"])  # what the registry has under this name
     grader = Grader(deployment, io.robot.field)
     physics = Stopwatch(io.robot)
     stack.listen(grader)
+    for listener in listeners:
+        stack.listen(listener)
     stack.command(deployment.run.command)
     begun, told = perf_counter(), 0.0
 

@@ -1,0 +1,116 @@
+"""Pictures of recorded instants, rendered off screen after the run and apart from it.
+
+Whatever goes wrong with a renderer costs pictures only: each attempt has a process of its own.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from surefoot.tools.evaluation.workers import run_apart
+from surefoot.tools.reproduce.run_spec import RunSpec
+
+BACKENDS = ("egl", "osmesa")
+"""What MuJoCo can draw with where there is no display, in the order in which they are tried."""
+
+SIZE = (720, 480)
+"""Width and height of a picture in pixels."""
+
+_QUALITY = 88  # of JPEG: text-free pictures show no trace of it
+
+
+@dataclass(frozen=True)
+class View:
+    """Where a picture is taken from.
+
+    Attributes:
+        lookat_W: (3,) what stands in its middle [m].
+        azimuth, elevation: direction of sight [degrees]; azimuth 0 looks along x, 90 along y; elevation up.
+        distance_m: from the camera to that point.
+    """
+
+    lookat_W: tuple[float, float, float]
+    azimuth: float
+    elevation: float = -20.0
+    distance_m: float = 1.2
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One picture: joint positions as recorded, a view, and the file."""
+
+    qpos: np.ndarray
+    view: View
+    path: Path
+
+
+def on_foot(foot_W: np.ndarray, leg: int, distance_m: float = 1.15) -> View:
+    """A foot and the ground under it from its own side: a front foot seen from ahead, a hind foot from abreast."""
+    side = -1.0 if leg in (0, 2) else 1.0
+    azimuth = 128.0 if leg in (0, 1) else 82.0
+    x, y, z = (float(each) for each in foot_W)
+    return View((x - 0.08, y, z + 0.12), side * azimuth, -16.0, distance_m)
+
+
+def whole_robot(p_WB: np.ndarray, azimuth: float = 62.0, distance_m: float = 1.75) -> View:
+    """The whole robot from its right side, walking to the right."""
+    return View((float(p_WB[0]) + 0.1, float(p_WB[1]), 0.12), azimuth, -20.0, distance_m)
+
+
+class Darkroom:
+    """Renders shots with the first backend that works.
+
+    Attributes:
+        trouble: why there are no pictures; empty while there is no reason.
+    """
+
+    def __init__(self, backends: Sequence[str] = BACKENDS):
+        asked = os.environ.get("MUJOCO_GL", "")
+        self._backends = [asked] if asked else list(backends)
+        self.trouble = "" if self._backends else "no renderer on this machine"
+
+    def develop(self, spec: RunSpec, shots: Sequence[Shot]) -> bool:
+        """Render shots of one deployment to their files; false, with `trouble` set, if nothing can."""
+        reasons = []
+        while shots and self._backends:
+            backend = self._backends[0]
+            ((_, told),) = run_apart(render, [(backend, spec, list(shots))], 1)
+            if "failure" not in told:
+                return True
+            reasons.append(f"{backend}: {told['failure']}")
+            self._backends.pop(0)  # it has no place on this machine: the others are left
+        if shots and not self.trouble:
+            self.trouble = f"no renderer on this machine ({'; '.join(reasons)})"
+        return not shots
+
+
+def render(backend: str, spec: RunSpec, shots: Sequence[Shot]) -> dict:
+    """Render in this process, which must not have imported MuJoCo's renderer yet."""
+    os.environ["MUJOCO_GL"] = backend
+    import mujoco
+    from PIL import Image
+
+    from surefoot.hw.mujoco.scene import build_scene
+
+    deployment = spec.deployment()
+    model, _ = build_scene(deployment, deployment.load_robot(), friction=0.6)
+    data = mujoco.MjData(model)
+    width, height = SIZE
+    renderer = mujoco.Renderer(model, height, width)
+    camera = mujoco.MjvCamera()
+    for shot in shots:
+        data.qpos[:] = shot.qpos
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_camlight(model, data)
+        camera.lookat[:] = shot.view.lookat_W
+        camera.azimuth, camera.elevation = shot.view.azimuth, shot.view.elevation
+        camera.distance = shot.view.distance_m
+        renderer.update_scene(data, camera)
+        Image.fromarray(renderer.render()).save(shot.path, quality=_QUALITY)
+    renderer.close()
+    return {}
