@@ -21,6 +21,9 @@ from surefoot.tools.cli import main
         (["command", "jump"], "there are forward"),
         (["child", "flat", "engine"], "no process 'engine'"),
         (["eval", "flat", "--seeds", "x", "--out", "out"], "--seeds 'x'"),
+        (["reproduce", "out", "--set", "flat_gaol_m=0.3"], "did you mean flat_goal_m?"),
+        (["reproduce", "out", "--jobs", "0"], "--jobs 0: at least one"),
+        (["reproduce", "out", "--seeds", "one"], "--seeds 'one'"),
         (["eval", "flat", "--arm", "half", "--out", "out"], "no arm 'half'; there are full"),
         (["eval", "flat", "--arm", "threshold=high", "--out", "out"], "fsm.collapse_m = 'high': expected float"),
         (

@@ -93,9 +93,9 @@ class Evidence:
 
     def snapshots(self, run: RecordedRun, shots: Sequence[tuple[Shot, str]], caption: str) -> Pictures:
         """Rendered pictures with their labels, or the reason why there are none."""
-        done = self.darkroom.develop(run.spec, [shot for shot, _ in shots])
-        files = [shot.path for shot, _ in shots] if done else []
-        return Pictures(caption, files, [label for _, label in shots], "" if done else self.darkroom.trouble)
+        missing = self.darkroom.develop(run.spec, [shot for shot, _ in shots])
+        files = [] if missing else [shot.path for shot, _ in shots]
+        return Pictures(caption, files, [label for _, label in shots], missing)
 
 
 @dataclass(frozen=True)
@@ -127,6 +127,13 @@ def verdict(run: RecordedRun, quick: bool) -> str:
     return {"timeout": "time out", "contact": f"touched with {result['body_contact']}"}.get(
         result["failure"], result["failure"]
     )
+
+
+def per_foothold(runs: Sequence[RecordedRun]) -> str:
+    """Candidates tried for each accepted foothold, over runs, in words."""
+    footholds = sum(run.result["footholds"] for run in runs)
+    tried = sum(run.result["candidates_tried"] for run in runs)
+    return f"{tried / footholds:.2f} ({tried} for {footholds})" if footholds else "none accepted"
 
 
 def crossing_table(runs: Sequence[RecordedRun], quick: bool, caption: str, start: bool = False) -> Table:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
@@ -26,6 +27,8 @@ EXPERIMENTS: tuple[Experiment, ...] = (
 """In the order of the paper's figures."""
 
 PAGE = "index.html"
+
+_MET = {True: "reached", False: "not reached", None: "nothing measured"}
 
 RUN_COLUMNS = (
     Column("arm", "as `surefoot eval` knows it"),
@@ -190,10 +193,28 @@ def _page(command: str, plan: Plan, specs: dict[str, list[RunSpec]], sections: S
         quick=plan.quick,
         facts=facts,
         sections=sections,
-        marks=(),
+        marks=() if plan.quick else _marks(sections),
         documents=documents,
         columns={name: [(column.name, column.doc) for column in each] for name, each in columns.items()},
     )
+
+
+def _marks(sections: Sequence[Section]) -> list[tuple[str, str, str, str]]:
+    """The evaluation's marks that these runs have something to say to."""
+    return [
+        (f"{results['scenario']}, {results['arm']}: {row.mark}", row.asked, row.got, _MET[row.met])
+        for section in sections
+        for results in section.results
+        for row in _judged(results)
+    ]
+
+
+def _judged(results: dict) -> list:
+    """Rows of the evaluation's table of marks, where there is one."""
+    try:
+        return import_module("surefoot.tools.evaluation.marks").judge(results)
+    except ModuleNotFoundError:
+        return []
 
 
 def _described(specs: Sequence[RunSpec]) -> str:

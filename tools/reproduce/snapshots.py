@@ -63,45 +63,47 @@ def whole_robot(p_WB: np.ndarray, azimuth: float = 62.0, distance_m: float = 1.7
 
 
 class Darkroom:
-    """Renders shots with the first backend that works.
-
-    Attributes:
-        trouble: why there are no pictures; empty while there is no reason.
-    """
+    """Renders shots with the first backend that works here."""
 
     def __init__(self, backends: Sequence[str] = BACKENDS):
+        """`MUJOCO_GL`, where it is set, says which backend is wanted."""
         asked = os.environ.get("MUJOCO_GL", "")
         self._backends = [asked] if asked else list(backends)
-        self.trouble = "" if self._backends else "no renderer on this machine"
+        self._reasons: list[str] = []
 
-    def develop(self, spec: RunSpec, shots: Sequence[Shot]) -> bool:
-        """Render shots of one deployment to their files; false, with `trouble` set, if nothing can."""
-        reasons = []
+    def develop(self, spec: RunSpec, shots: Sequence[Shot]) -> str:
+        """Render shots of one deployment to their files; returns why there are none, or nothing."""
         while shots and self._backends:
             backend = self._backends[0]
             ((_, told),) = run_apart(render, [(backend, spec, list(shots))], 1)
-            if "failure" not in told:
-                return True
-            reasons.append(f"{backend}: {told['failure']}")
-            self._backends.pop(0)  # it has no place on this machine: the others are left
-        if shots and not self.trouble:
-            self.trouble = f"no renderer on this machine ({'; '.join(reasons)})"
-        return not shots
+            if not told:
+                return ""
+            if "failure" in told and "worker died" not in told["failure"]:
+                return f"not rendered: {told['failure']}"
+            self._reasons.append(f"{backend}: {told.get('no_renderer', told.get('failure'))}")
+            self._backends.pop(0)
+        if not shots:
+            return ""
+        return f"no renderer on this machine ({'; '.join(self._reasons) or 'none was tried'})"
 
 
 def render(backend: str, spec: RunSpec, shots: Sequence[Shot]) -> dict:
-    """Render in this process, which must not have imported MuJoCo's renderer yet."""
+    """Render in this process, which must not have imported MuJoCo yet; says what fails of the backend itself."""
     os.environ["MUJOCO_GL"] = backend
-    import mujoco
+    try:
+        import mujoco
+
+        from surefoot.hw.mujoco.scene import build_scene
+
+        deployment = spec.deployment()
+        model, _ = build_scene(deployment, deployment.load_robot(), friction=0.6)
+        width, height = SIZE
+        renderer = mujoco.Renderer(model, height, width)
+    except Exception as error:  # what is missing of GL shows as almost any kind of error
+        return {"no_renderer": f"{type(error).__name__}: {error}"}
     from PIL import Image
 
-    from surefoot.hw.mujoco.scene import build_scene
-
-    deployment = spec.deployment()
-    model, _ = build_scene(deployment, deployment.load_robot(), friction=0.6)
     data = mujoco.MjData(model)
-    width, height = SIZE
-    renderer = mujoco.Renderer(model, height, width)
     camera = mujoco.MjvCamera()
     for shot in shots:
         data.qpos[:] = shot.qpos
