@@ -26,7 +26,7 @@ h2 { font-size: 1.25rem; line-height: 1.3; margin: 3rem 0 .6rem; padding-top: .8
   border-top: 1px solid var(--line); }
 p, blockquote, ul { max-width: 46rem; }
 a { color: var(--mark); }
-.soft, figcaption, caption { color: var(--soft); font-size: .9rem; }
+.soft, figcaption { color: var(--soft); font-size: .9rem; }
 .notice { background: var(--card); border-left: 4px solid var(--mark); padding: .7rem 1rem; max-width: 46rem; }
 blockquote { margin: 0 0 1rem; padding: .1rem 0 .1rem 1rem; border-left: 4px solid var(--line);
   color: var(--soft); }
@@ -38,9 +38,10 @@ figure { margin: 1.2rem 0; }
 img { display: block; width: 100%; height: auto; border-radius: 4px; background: #ffffff; }
 .wide img { min-width: 38rem; }
 .label { font-size: .85rem; margin: .3rem 0 0; }
-.scroll { overflow-x: auto; margin: 1.2rem 0; }
+.scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums; }
-caption { text-align: left; padding-bottom: .4rem; max-width: 46rem; }
+figcaption { max-width: 46rem; }
+table.figures td { white-space: nowrap; }
 th, td { text-align: right; padding: .3rem .7rem; border-bottom: 1px solid var(--line); vertical-align: top; }
 th:first-child, td:first-child { text-align: left; padding-left: 0; }
 table.words th, table.words td { text-align: left; }
@@ -49,7 +50,8 @@ code, pre { font: .85em/1.45 ui-monospace, SFMono-Regular, Menlo, Consolas, mono
 pre { background: var(--card); padding: .8rem 1rem; overflow-x: auto; border-radius: 4px; }
 .yes { color: var(--good); } .no { color: var(--bad); }
 @media print { :root { --ink: #000; --soft: #444; --line: #bbb; --ground: #fff; --card: #f3f3f3; }
-  body { font-size: 10.5pt; } main { max-width: none; padding: 0; } figure, table { break-inside: avoid; }
+  body { font-size: 10.5pt; } main { max-width: none; padding: 0; } figure { break-inside: avoid; }
+  .scroll, .wide { overflow: visible; }
   h2 { break-after: avoid; } .wide img { min-width: 0; } .row > div { flex-basis: 45%; } }
 """
 
@@ -181,10 +183,11 @@ def _pictures(part: Pictures) -> str:
 def _table(table: Table, words: bool = False) -> str:
     head = "".join(f'<th scope="col">{escape(each)}</th>' for each in table.head)
     rows = "".join("<tr>" + "".join(_cell(each) for each in row) + "</tr>" for row in table.rows)
-    caption = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
-    kind = ' class="words"' if words else ""
-    inner = f"{caption}<thead><tr>{head}</tr></thead><tbody>{rows}</tbody>"
-    return f'<div class="scroll"><table{kind}>{inner}</table></div>'
+    # Above the part that scrolls, so that a narrow screen shows all of it.
+    caption = f"<figcaption>{escape(table.caption)}</figcaption>" if table.caption else ""
+    kind = "words" if words else "figures"
+    inner = f"<thead><tr>{head}</tr></thead><tbody>{rows}</tbody>"
+    return f'<figure>{caption}<div class="scroll"><table class="{kind}">{inner}</table></div></figure>'
 
 
 def _cell(text: str) -> str:

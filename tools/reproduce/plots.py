@@ -74,7 +74,7 @@ def force_panel(axes: Axes, t: np.ndarray, values: dict[str, np.ndarray], title:
 
 
 def polygon_panel(axes: Axes, p_WF: np.ndarray, leg: int, com_W: np.ndarray, margin_m: np.ndarray) -> None:
-    """The triangle of the other three feet with the CoM's projections, seen from above; x is up, the walk's way.
+    """The triangle of the other three feet with the CoM's projections, from above; the walk goes to the right.
 
     Args:
         axes: to draw in.
@@ -84,23 +84,25 @@ def polygon_panel(axes: Axes, p_WF: np.ndarray, leg: int, com_W: np.ndarray, mar
         margin_m: (n,) their distance from the nearest edge, positive inside [m].
     """
     corners = SupportTriangle(p_WF, leg).corners
-    axes.fill(-corners[:, 1], corners[:, 0], facecolor="#dfe8f5", edgecolor=DARK, linewidth=1.8)
-    axes.plot(-p_WF[leg, 1], p_WF[leg, 0], "o", color=ASKED, markersize=8)
+    axes.fill(corners[:, 0], corners[:, 1], facecolor="#dfe8f5", edgecolor=DARK, linewidth=1.8)
+    axes.plot(p_WF[leg, 0], p_WF[leg, 1], "o", color=ASKED, markersize=8)
     axes.annotate(
         "probing foot",
-        (-p_WF[leg, 1], p_WF[leg, 0]),
-        xytext=(0, 8 if leg < 2 else -14),
+        (p_WF[leg, 0], p_WF[leg, 1]),
+        xytext=(-7, -3) if leg < 2 else (7, -3),
         textcoords="offset points",
-        ha="center",
+        ha="right" if leg < 2 else "left",
         fontsize=7.5,
     )
-    axes.plot(-com_W[:, 1], com_W[:, 0], ".", color=COM, markersize=3)
-    axes.set_title(f"CoM: least {1e3 * margin_m.min():.0f} mm inside")
+    axes.plot(com_W[:, 0], com_W[:, 1], ".", color=COM, markersize=3)
+    least_mm = 1e3 * float(margin_m.min())
+    axes.set_title(f"CoM: {abs(least_mm):.0f} mm {'inside' if least_mm >= 0.0 else 'outside'} at the least")
     axes.set_aspect("equal")
     axes.margins(0.14)
     axes.xaxis.set_major_locator(MultipleLocator(0.2))
-    axes.set_xlabel("to the right m")
-    axes.set_ylabel("ahead m", labelpad=0.0)
+    axes.yaxis.set_major_locator(MultipleLocator(0.1))
+    axes.set_xlabel("ahead m")
+    axes.set_ylabel("to the left m")
 
 
 def normal_component(force_W: np.ndarray, normal_W: np.ndarray) -> np.ndarray:

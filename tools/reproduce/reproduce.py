@@ -112,7 +112,7 @@ def _run_missing(
 ) -> None:
     calls = [(spec, out / name / "runs" / spec.name) for name, each in specs.items() for spec in each]
     missing = [call for call in calls if not is_whole(*call)]
-    say(f"{len(calls)} runs, {len(calls) - len(missing)} of them whole already")
+    say(f"runs: {len(calls)}, whole already: {len(calls) - len(missing)}")
     for number, ((spec, folder), result) in enumerate(run_apart(work, missing, jobs), 1):
         name = folder.parent.parent.name
         end = "success" if result["success"] else result["failure"]
@@ -178,7 +178,7 @@ def _page(command: str, plan: Plan, specs: dict[str, list[RunSpec]], sections: S
     documents = [
         (
             f"{name}/runs.csv, results_ARM.json",
-            "the graded runs of this experiment; JSON as `surefoot eval` writes it",
+            "the graded runs of this experiment; JSON as of surefoot eval",
         )
         for name in specs
     ]

@@ -49,7 +49,7 @@ def test_the_snapshots_follow_one_collapse_and_the_beams():
         ("end", 0, 0.9, 0.0),
     )
     found = planks.traversal_rows(run(), kept)
-    assert [row for row, _ in found] == [3, 4, 6, 7]
+    assert [row for row, _, _ in found] == [3, 4, 6, 7]
     assert "3.4 cm" in found[0][1] and "23 cm before their end" in found[3][1]
 
 
@@ -69,6 +69,11 @@ def test_the_mean_is_over_complete_traversals_only_and_says_so():
     told = planks.mean_time(runs[2:], quick=False)
     assert told.startswith("No complete traversal here: no run crossed") and "390 s (6.5 min)" in told
     assert "the quick version cuts every crossing off" in planks.mean_time(runs[2:], quick=True)
+
+
+def test_a_run_that_was_cut_off_has_not_failed():
+    runs = [run(False, failure="timeout"), run(False, failure="fell"), run()]
+    assert planks.failures(runs, quick=True) == "1 of 3" and planks.failures(runs, quick=False) == "2 of 3"
 
 
 def series(rows):

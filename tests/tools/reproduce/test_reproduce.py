@@ -132,7 +132,7 @@ def test_the_results_are_those_of_an_evaluation(done):
 def test_a_second_call_runs_nothing_and_writes_the_same_page(done):
     out, html, _ = done
     again, said = told(out, [FORCES, PLANKS], work=stand_ins.never)
-    assert said[0] == "3 runs, 3 of them whole already"
+    assert said[0] == "runs: 3, whole already: 3"
     assert again == html
 
 
@@ -162,7 +162,7 @@ def test_a_run_that_fails_is_named_and_made_by_the_next_call(tmp_path, work, why
     assert runs_of(tmp_path) == {"mpc_only_seed0"}
     assert any(why in line for line in said)
     html, said = told(tmp_path, [PLANKS], darkroom=Darkroom([]))
-    assert said[0] == "2 runs, 1 of them whole already"
+    assert said[0] == "runs: 2, whole already: 1"
     assert why not in " ".join(Page(html).text) and runs_of(tmp_path) == {"mpc_only_seed0", "mpc_only_seed1"}
 
 
@@ -178,7 +178,7 @@ def test_who_is_interrupted_goes_on_where_it_stopped(tmp_path):
     half.mkdir()  # as a crash of the machine might leave it
     (half / "run.json").write_text('{"stamp": "')
     _, said = told(tmp_path, [PLANKS], darkroom=Darkroom([]))
-    assert said[0] == "2 runs, 1 of them whole already"
+    assert said[0] == "runs: 2, whole already: 1"
     assert json.loads((half / "run.json").read_text())["result"]["seed"] == 1
 
 
@@ -188,7 +188,7 @@ def test_other_settings_make_the_run_again(done):
         PLANKS, specs=lambda plan: [replace(spec, overrides=("hw.torque_noise=0.4",)) for spec in stands(plan)[:1]]
     )
     with_noise, said = told(out, [other], work=stand_ins.never, darkroom=Darkroom([]))
-    assert said[0] == "1 runs, 0 of them whole already"
+    assert said[0] == "runs: 1, whole already: 0"
     assert "is run again" in " ".join(Page(with_noise).text)
 
 
