@@ -101,7 +101,7 @@ def record(spec: RunSpec, folder: Path) -> dict:
     def say(line: str) -> None:
         print(f"  {experiment} {spec.name}: {line}", flush=True)
 
-    result = grade(deployment, spec.limit_s, say, list(recorders.values()))
+    result = grade(deployment, spec.limit_s, say, listeners=list(recorders.values()))
     if str(result["failure"]).startswith("error"):
         return result
     _, field = build_scene(deployment, None, friction=1.0)

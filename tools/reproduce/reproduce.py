@@ -11,7 +11,7 @@ from pathlib import Path
 
 from surefoot.config.typed_toml import ConfigError, to_table
 from surefoot.tools.evaluation.workers import Work, run_apart
-from surefoot.tools.reproduce import force_tracking, planks, polygon_and_force
+from surefoot.tools.reproduce import force_tracking, missing_planks, planks, polygon_and_force, rocks
 from surefoot.tools.reproduce.experiment import Evidence, Experiment, Part, Plan, Words
 from surefoot.tools.reproduce.page import Page, Section, write_page
 from surefoot.tools.reproduce.recorded_run import RECORDERS, RecordedRun, by_arm, is_whole, record, sources
@@ -23,6 +23,8 @@ EXPERIMENTS: tuple[Experiment, ...] = (
     planks.EXPERIMENT,
     polygon_and_force.EXPERIMENT,
     force_tracking.EXPERIMENT,
+    missing_planks.EXPERIMENT,
+    rocks.EXPERIMENT,
 )
 """In the order of the paper's figures."""
 
