@@ -24,6 +24,7 @@ from surefoot.tools.reproduce.experiment import (
 )
 from surefoot.tools.reproduce.plots import ASKED, DARK, MPC, new_figure, save, styled
 from surefoot.tools.reproduce.recorded_run import RecordedRun
+from surefoot.tools.reproduce.recording.map_views import hole_cells
 from surefoot.tools.reproduce.run_spec import RunSpec
 from surefoot.tools.reproduce.snapshots import Shot, View
 
@@ -47,14 +48,14 @@ def specs(plan: Plan) -> list[RunSpec]:
 
 
 def best_view(runs: list[RecordedRun]) -> tuple[RecordedRun, MapView] | None:
-    """The view, of all runs, in which the foothold was moved and most cells are unsafe; None without one."""
+    """The view, of all runs, in which the foothold was moved and most of a hole is seen; None without one."""
     found: list[tuple[int, RecordedRun, MapView]] = []
     for run in runs:
         views = run.arrays("map_views")
         if views:
-            unsafe = int((views["heightmap_unsafe"][0] != 0).sum())
+            hole = hole_cells(views["heightmap_unsafe"][0])
             moved = np.hypot(*(views["foothold_W"][0] - views["target_W"][0])[:2]) > 0.5 * views["cell_m"][0]
-            found.append((unsafe if moved else 0, run, {key: value[0] for key, value in views.items()}))
+            found.append((hole if moved else 0, run, {key: value[0] for key, value in views.items()}))
     best = max(found, key=lambda each: each[0], default=None)
     return best[1:] if best is not None and best[0] else None
 

@@ -6,7 +6,8 @@ Whatever goes wrong with a renderer costs pictures only: each attempt has a proc
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -75,7 +76,8 @@ class Darkroom:
         """Render shots of one deployment to their files; returns why there are none, or nothing."""
         while shots and self._backends:
             backend = self._backends[0]
-            ((_, told),) = run_apart(render, [(backend, spec, list(shots))], 1)
+            with _environment("MUJOCO_GL", backend):
+                ((_, told),) = run_apart(render, [(spec, list(shots))], 1)
             if not told:
                 return ""
             if "failure" in told and "worker died" not in told["failure"]:
@@ -87,9 +89,22 @@ class Darkroom:
         return f"no renderer on this machine ({'; '.join(self._reasons) or 'none was tried'})"
 
 
-def render(backend: str, spec: RunSpec, shots: Sequence[Shot]) -> dict:
-    """Render in this process, which must not have imported MuJoCo yet; says what fails of the backend itself."""
-    os.environ["MUJOCO_GL"] = backend
+@contextmanager
+def _environment(name: str, value: str) -> Iterator[None]:
+    """A variable for the processes started meanwhile: MuJoCo reads it when it is imported."""
+    before = os.environ.get(name)
+    os.environ[name] = value
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[name]
+        else:
+            os.environ[name] = before
+
+
+def render(spec: RunSpec, shots: Sequence[Shot]) -> dict:
+    """Render in this process with the backend of its environment; says what fails of the backend itself."""
     try:
         import mujoco
 

@@ -7,18 +7,33 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.bus.message import Message
-from surefoot.bus.messages import ElevationGrid, FootholdRegions, FootholdRequest, MotionReference, SimTruth
+from surefoot.bus.messages import (
+    ElevationGrid,
+    FootholdRegions,
+    FootholdRequest,
+    MotionReference,
+    SimTruth,
+    Unsafe,
+)
 from surefoot.config.deployment import Deployment
 from surefoot.tools.reproduce.recording.instants import joint_positions
 from surefoot.tools.reproduce.recording.recorder import Column
 
 KEPT = 6
-"""The views with most unsafe cells and a foothold that was moved."""
+"""The views with most of a hole and a foothold that was moved."""
+
+
+_HOLE = Unsafe.ROUGH | Unsafe.STEEP | Unsafe.EDGE
+
+
+def hole_cells(unsafe: np.ndarray) -> int:
+    """How many cells of a heightmap's flags are unsafe by the shape of the ground that was seen there."""
+    return int((((unsafe & _HOLE) != 0) & ((unsafe & Unsafe.UNKNOWN) == 0)).sum())
 
 
 @dataclass(frozen=True)
 class _View:
-    score: float
+    score: int
     arrays: dict[str, np.ndarray]
 
 
@@ -85,7 +100,8 @@ class MapViews:
             "p_WB": truth.p_WB,
             "qpos": joint_positions(truth),
         }
-        self._views.append(_View(unsafe * (moved_m > 0.5 * regions.cell_m), view))
+        moved = moved_m > 0.5 * regions.cell_m
+        self._views.append(_View(hole_cells(regions.heightmap_unsafe[leg]) if moved else 0, view))
         self._views = sorted(self._views, key=lambda each: -each.score)[:KEPT]
 
     def arrays(self) -> dict[str, np.ndarray]:
