@@ -27,9 +27,8 @@ class Plan:
     quick: bool = False
 
     def seeds_or(self, own: Sequence[int]) -> tuple[int, ...]:
-        """The seeds of an experiment that has its own; the quick version takes the first one."""
-        seeds = self.seeds or tuple(own)
-        return seeds[:1] if self.quick else seeds
+        """The seeds that were asked for, each once; or an experiment's own, in the quick version one."""
+        return tuple(dict.fromkeys(self.seeds)) or tuple(own[:1] if self.quick else own)
 
 
 @dataclass(frozen=True)

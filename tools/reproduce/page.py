@@ -106,9 +106,9 @@ class Page:
         ]
         if self.quick:
             parts.append(
-                '<p class="notice"><strong>Quick version.</strong> One seed, shorter walks, and crossings cut off '
-                "after a few footholds. It shows what the experiments look like; it neither confirms nor refutes "
-                "the paper’s figures. Leave out <code>--quick</code> for those.</p>"
+                '<p class="notice"><strong>Quick version.</strong> Few seeds, shorter walks, and crossings cut '
+                "off after a few footholds. It shows what the experiments look like; it neither confirms nor "
+                "refutes the paper’s figures. Leave out <code>--quick</code> for those.</p>"
             )
         parts.append(_contents(self.sections))
         parts += [_section(section) for section in self.sections]

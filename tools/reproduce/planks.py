@@ -31,13 +31,14 @@ def specs(plan: Plan) -> list[RunSpec]:
     """Each seed starts at another distance from the planks; the baseline from the same ones."""
     offsets = plan.settings.start_offsets_m
     limit_s = plan.settings.quick_limit_s if plan.quick else LIMIT_S
+    usual = RunSpec("planks", "full", 0, limit_s, ()).deployment()
     found = []
     for arm in ("full", "mpc_only"):
         for place, seed in enumerate(plan.seeds_or(SEEDS)):
             offset = offsets[place % len(offsets)]
-            found.append(
-                RunSpec("planks", arm, seed, limit_s, ("instants",), (f"terrain.planks.start_offset_m={offset}",))
-            )
+            goal = usual.fsm.goal_m + offset - usual.terrain.planks.start_offset_m  # as far beyond the planks
+            overrides = (f"terrain.planks.start_offset_m={offset:g}", f"fsm.goal_m={goal:g}")
+            found.append(RunSpec("planks", arm, seed, limit_s, ("instants",), overrides))
     return found
 
 

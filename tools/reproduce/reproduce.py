@@ -165,6 +165,8 @@ def _results(runs: Sequence[RecordedRun]) -> dict:
     return {
         "scenario": Path(spec.scenario).stem,
         "arm": spec.arm,
+        "vision": spec.deployment().run.vision,
+        "limit_s": spec.limit_s,
         "config": to_table(spec.deployment()),
         "version": version("surefoot"),
         "runs": [run.result for run in runs],

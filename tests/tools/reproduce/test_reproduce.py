@@ -218,8 +218,16 @@ def test_every_experiment_can_be_set_up(experiment, quick):
 
 def test_five_traversals_start_at_five_places():
     full = [spec for spec in planks.specs(Plan()) if spec.arm == "full"]
-    starts = [spec.deployment().terrain.planks.start_offset_m for spec in full]
+    deployments = [spec.deployment() for spec in full]
+    starts = [each.terrain.planks.start_offset_m for each in deployments]
     assert [spec.seed for spec in full] == [0, 1, 2, 3, 4] and len(set(starts)) == 5
+    # Each has to go as much further as it starts further away.
+    assert len({round(each.fsm.goal_m - start, 6) for each, start in zip(deployments, starts, strict=True)}) == 1
+
+
+def test_seeds_that_are_asked_for_are_run_once_each():
+    assert Plan(seeds=(7, 3, 7), quick=True).seeds_or((0, 1)) == (7, 3)
+    assert Plan(quick=True).seeds_or((0, 1)) == (0,) and Plan().seeds_or((0, 1)) == (0, 1)
 
 
 def test_settings_have_limits():
