@@ -132,6 +132,8 @@ def per_foothold(runs: Sequence[RecordedRun]) -> str:
     """Candidates tried for each accepted foothold, over runs, in words."""
     footholds = sum(run.result["footholds"] for run in runs)
     tried = sum(run.result["candidates_tried"] for run in runs)
+    if not runs:
+        return "no run"
     return f"{tried / footholds:.2f} ({tried} for {footholds})" if footholds else "none accepted"
 
 

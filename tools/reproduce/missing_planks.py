@@ -132,8 +132,8 @@ def draw_maps(run: RecordedRun, view: MapView, folder: Path) -> Pictures:
         path = save(figure, folder / "map.svg")
     caption = (
         f"Seed {run.spec.seed}: the elevation map, and the foothold heightmap of {LEGS[int(view['leg'])]} "
-        "(orange square). Light cells are safe, dark ones unsafe, the outline is the region of eq. (4); the "
-        "foothold (blue square) is moved from the target (ring) to safe ground."
+        "(orange square). White dots are safe cells, black ones unsafe, cells left white unknown; the outline is "
+        "the region of eq. (4). The foothold (blue square) is moved from the target (ring) to safe ground."
     )
     return Pictures(caption, [path], ["Elevation map with the hole and foothold heightmap"])
 

@@ -33,7 +33,7 @@ blockquote { margin: 0 0 1rem; padding: .1rem 0 .1rem 1rem; border-left: 4px sol
 figure { margin: 1.2rem 0; }
 .row { display: flex; flex-wrap: wrap; gap: .8rem; }
 .row > div { flex: 1 1 19rem; min-width: 0; }
-.row.one > div { flex-basis: 100%; }
+.row.one > div { flex-basis: 100%; } .row > .shot { max-width: 36rem; }
 .wide { overflow-x: auto; }
 img { display: block; width: 100%; height: auto; border-radius: 4px; background: #ffffff; }
 .wide img { min-width: 38rem; }

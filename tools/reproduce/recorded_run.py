@@ -16,12 +16,15 @@ import numpy as np
 
 from surefoot.config.typed_toml import to_table
 from surefoot.hw.mujoco.scene import build_scene
+from surefoot.tools.evaluation.arms import TRUE_STATE
 from surefoot.tools.evaluation.one_run import grade
+from surefoot.tools.evaluation.pooled import is_error
+from surefoot.tools.evaluation.results_file import source_digest
 from surefoot.tools.reproduce.recording.forces import ForceSeries
 from surefoot.tools.reproduce.recording.instants import Instants
 from surefoot.tools.reproduce.recording.map_views import MapViews
 from surefoot.tools.reproduce.recording.recorder import Recorder, write_csv
-from surefoot.tools.reproduce.run_spec import ROOT, RunSpec
+from surefoot.tools.reproduce.run_spec import RunSpec
 
 RECORDERS: dict[str, type[ForceSeries] | type[Instants] | type[MapViews]] = {
     "forces": ForceSeries,
@@ -30,8 +33,7 @@ RECORDERS: dict[str, type[ForceSeries] | type[Instants] | type[MapViews]] = {
 }
 """By the name of their files."""
 
-_DECISIVE = ("bus", "components", "config", "hw", "tools/evaluation", "tools/reproduce/recording")
-"""Rooms whose sources decide what a run gives."""
+_RECORDING = Path(__file__).parent / "recording"
 
 
 def stamp(spec: RunSpec) -> str:
@@ -49,11 +51,9 @@ def stamp(spec: RunSpec) -> str:
 @cache
 def sources() -> str:
     """Fingerprint of the sources that decide what a run gives."""
-    seen = sha256()
-    for room in _DECISIVE:
-        for path in sorted((ROOT / room).rglob("*")):
-            if path.suffix in (".py", ".toml"):
-                seen.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
+    seen = sha256(source_digest().encode())
+    for path in sorted(_RECORDING.rglob("*.py")):
+        seen.update(path.name.encode() + b"\0" + path.read_bytes())
     return seen.hexdigest()[:12]
 
 
@@ -101,8 +101,9 @@ def record(spec: RunSpec, folder: Path) -> dict:
     def say(line: str) -> None:
         print(f"  {experiment} {spec.name}: {line}", flush=True)
 
-    result = grade(deployment, spec.limit_s, say, listeners=list(recorders.values()))
-    if str(result["failure"]).startswith("error"):
+    ideal = spec.arm == TRUE_STATE
+    result = grade(deployment, spec.limit_s, say, ideal, list(recorders.values()))
+    if is_error(result):
         return result
     _, field = build_scene(deployment, None, friction=1.0)
     kept = {"stamp": stamp(spec), "result": result, "field_x_m": [field.start_x, field.end_x]}

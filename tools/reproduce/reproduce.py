@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Callable, Iterator, Sequence
-from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
 from surefoot.config.typed_toml import ConfigError, to_table
+from surefoot.tools.evaluation.marks import judge
+from surefoot.tools.evaluation.pooled import is_error
 from surefoot.tools.evaluation.workers import Work, run_apart
 from surefoot.tools.reproduce import force_tracking, missing_planks, planks, polygon_and_force, rocks
 from surefoot.tools.reproduce.experiment import Evidence, Experiment, Part, Plan, Words
@@ -121,7 +122,7 @@ def _run_missing(
         say(
             f"[{number}/{len(missing)}] {name} {spec.name}: {end}, {result.get('sim_time_s', 0.0):.0f} s simulated"
         )
-        if str(result["failure"]).startswith("error"):
+        if is_error(result):
             failed[name][spec.name] = result["failure"]
 
 
@@ -209,16 +210,8 @@ def _marks(sections: Sequence[Section]) -> list[tuple[str, str, str, str]]:
         (f"{results['scenario']}, {results['arm']}: {row.mark}", row.asked, row.got, _MET[row.met])
         for section in sections
         for results in section.results
-        for row in _judged(results)
+        for row in judge(results)
     ]
-
-
-def _judged(results: dict) -> list:
-    """Rows of the evaluation's table of marks, where there is one."""
-    try:
-        return import_module("surefoot.tools.evaluation.marks").judge(results)
-    except ModuleNotFoundError:
-        return []
 
 
 def _described(specs: Sequence[RunSpec]) -> str:

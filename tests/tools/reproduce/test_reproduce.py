@@ -136,6 +136,15 @@ def test_a_second_call_runs_nothing_and_writes_the_same_page(done):
     assert again == html
 
 
+def test_the_full_version_is_held_against_the_marks(done):
+    out, quick, _ = done
+    path = reproduce(out, Plan(), say=lambda line: None, experiments=[PLANKS, FORCES], work=stand_ins.never)
+    text = " ".join(needs_nothing_else(path.read_text(encoding="utf-8")).text)
+    assert "planks, mpc_only: baseline fails ≥ 8 of 10 2 of 2 reached" in text
+    assert "Quick version" not in text and "baseline fails" not in quick
+    assert "time out" in text and "cut off" not in text
+
+
 def test_without_a_renderer_the_page_says_so_and_keeps_all_else(done):
     out, _, _ = done
     html, _ = told(out, [PLANKS, FORCES], work=stand_ins.never, darkroom=Darkroom(["nonsense"]))
