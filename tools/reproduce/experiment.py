@@ -128,6 +128,11 @@ def verdict(run: RecordedRun, quick: bool) -> str:
     )
 
 
+def cut_off(runs: Sequence[RecordedRun], quick: bool) -> bool:
+    """Every run was cut off by the quick version before it was decided."""
+    return quick and all(run.result["failure"] == "timeout" for run in runs)
+
+
 def per_foothold(runs: Sequence[RecordedRun]) -> str:
     """Candidates tried for each accepted foothold, over runs, in words."""
     footholds = sum(run.result["footholds"] for run in runs)
@@ -159,4 +164,7 @@ def crossing_table(runs: Sequence[RecordedRun], quick: bool, caption: str, start
         if start:
             offset = run.spec.deployment().terrain.planks.start_offset_m
             rows[-1].insert(1, f"{1e2 * offset:.0f}")
+    stopped = [f"seed {run.spec.seed}: {why}" for run in runs if (why := run.result.get("stop_reason"))]
+    if stopped:
+        caption += f" At rest at the end, in the robot's own words: {'; '.join(stopped)}."
     return Table(caption, [head[0], "start cm", *head[1:]] if start else head, rows)

@@ -97,7 +97,7 @@ def report(evidence: Evidence) -> list[Part]:
         parts.append(
             Words(
                 f"Candidates tried for each foothold: {per_foothold(vision)} with the map, {per_foothold(blind)} "
-                f"blind. With the map, probing still found {collapses} collapses: where boards are left, the map "
+                f"blind. Collapses that probing found with the map: {collapses}; where a board is left, the map "
                 "sees flat ground."
             )
         )

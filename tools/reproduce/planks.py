@@ -13,6 +13,7 @@ from surefoot.tools.reproduce.experiment import (
     Plan,
     Words,
     crossing_table,
+    cut_off,
     verdict,
 )
 from surefoot.tools.reproduce.recorded_run import RecordedRun
@@ -63,7 +64,7 @@ def mean_time(runs: list[RecordedRun], quick: bool) -> str:
     times = [run.result["sim_time_s"] for run in runs if run.result["success"]]
     paper = f"the paper's mean over five traversals is {PAPER_MEAN_S:.0f} s (6.5 min), on the robot"
     if not times:
-        why = "the quick version cuts every crossing off" if quick else "no run crossed"
+        why = "the quick version cuts every crossing off" if cut_off(runs, quick) else "no run crossed"
         return f"No complete traversal here: {why}; {paper}."
     return (
         f"Mean of {len(times)} complete traversals ({len(runs)} started): {np.mean(times):.0f} s of simulated "

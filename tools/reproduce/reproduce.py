@@ -38,6 +38,7 @@ RUN_COLUMNS = (
     Column("seed", "of the plant and its noise"),
     Column("success", "1 the terrain was crossed, on flat ground the goal reached"),
     Column("failure", "fell, stuck, contact, stopped, timeout; empty after a success"),
+    Column("stop_reason", "what the state machine said when the run ended at rest; otherwise empty"),
     Column("sim_time_s", "simulated time [s]"),
     Column("wall_time_s", "time on the wall [s]"),
     Column("distance_m", "of the trunk along x [m]"),

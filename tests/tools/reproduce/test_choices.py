@@ -68,7 +68,10 @@ def test_the_mean_is_over_complete_traversals_only_and_says_so():
     assert planks.mean_time(runs, quick=False).startswith("Mean of 2 complete traversals (3 started): 210 s")
     told = planks.mean_time(runs[2:], quick=False)
     assert told.startswith("No complete traversal here: no run crossed") and "390 s (6.5 min)" in told
-    assert "the quick version cuts every crossing off" in planks.mean_time(runs[2:], quick=True)
+    assert "no run crossed" in planks.mean_time(runs[2:], quick=True)  # it fell: that is no matter of time
+    late = [run(False, 40.0, "timeout")]
+    assert "the quick version cuts every crossing off" in planks.mean_time(late, quick=True)
+    assert "no run crossed" in planks.mean_time(late, quick=False)
 
 
 def test_a_run_that_was_cut_off_has_not_failed():
