@@ -196,6 +196,8 @@ def _press(call: argparse.Namespace) -> int:
 
 
 def _reproduce(call: argparse.Namespace) -> int:
+    import shlex
+
     from rich.console import Console
 
     from surefoot.config.reproduce import Reproduce
@@ -209,14 +211,17 @@ def _reproduce(call: argparse.Namespace) -> int:
     seeds = tuple(_seeds(call.seeds)) if call.seeds else ()
     console = Console(soft_wrap=True, highlight=False)
     words = ["surefoot", "reproduce", str(call.out), *(["--quick"] if call.quick else [])]
-    words += [*(["--seeds", call.seeds] if call.seeds else []), *(f"--set {each}" for each in call.set)]
+    words += [
+        *(["--seeds", call.seeds] if call.seeds else []),
+        *(word for each in call.set for word in ("--set", each)),
+    ]
 
     def say(line: str) -> None:
         console.print(line, markup=False)
 
     plan = Plan(build(Reproduce, table), seeds, call.quick)
     try:
-        reproduce(call.out, plan, call.jobs, say, " ".join(words))
+        reproduce(call.out, plan, call.jobs, say, shlex.join(words))
     except KeyboardInterrupt:
         say("stopped; the same call goes on from here")
         raise

@@ -34,6 +34,7 @@ figure { margin: 1.2rem 0; }
 .row { display: flex; flex-wrap: wrap; gap: .8rem; }
 .row > div { flex: 1 1 19rem; min-width: 0; }
 .row.one > div { flex-basis: 100%; } .row > .shot { max-width: 36rem; }
+.row.even > div { flex-basis: 26rem; }
 .wide { overflow-x: auto; }
 img { display: block; width: 100%; height: auto; border-radius: 4px; background: #ffffff; }
 .wide img { min-width: 38rem; }
@@ -177,7 +178,8 @@ def _pictures(part: Pictures) -> str:
         image = f'<img src="{source}" alt="{escape(label)}">'
         told = "" if plot else f'<p class="label">{escape(label)}</p>'
         cells.append(f'<div class="{"wide" if plot else "shot"}">{image}{told}</div>')
-    return f'<figure><div class="row{" one" if plot else ""}">{"".join(cells)}</div>{caption}</figure>'
+    kind = " one" if plot else " even" if len(part.files) % 2 == 0 else ""
+    return f'<figure><div class="row{kind}">{"".join(cells)}</div>{caption}</figure>'
 
 
 def _table(table: Table, words: bool = False) -> str:
