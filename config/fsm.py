@@ -37,6 +37,9 @@ class Fsm:
     base_height_min_m: Reach = 0.27  # of the hip axes; the base is lowered as far as this to reach a candidate
     base_height_step_m: Annotated[float, Within(0.001, 0.1)] = 0.01
     leg_length_plan_m: Reach = 0.40  # planned reach: eq. (5) keeps the base a few centimetres short of its pose
+    put_off: bool = (
+        True  # a leg without a safe foothold waits for another to move; false: STOPPED at once (II-D.5)
+    )
     depth_reserve_m: Distance = 0.0  # the ground of a candidate may lie this much lower and must still be in reach
     leg_length_max_m: Reach = 0.470  # a foot that looks for ground stops here (Sec. II-D.4)
 

@@ -26,6 +26,7 @@ class Course:
         self._origin_W = np.zeros((4, 3))
         self._place = 0
         self._first: list[int] = []
+        self._put_off: set[int] = set()
 
     def begin(self, p_WF: np.ndarray, heading: float, direction_B: np.ndarray) -> None:
         """Start from feet (4, 3) in a direction (2,) of the base frame; no leg goes before the others."""
@@ -35,6 +36,7 @@ class Course:
         self._origin_W = p_WF.copy()
         self._place = 0
         self._first.clear()
+        self._put_off.clear()
 
     def put_first(self, leg: int) -> None:
         """A leg without a foothold that can be trusted goes before all others, after those that wait already."""
@@ -42,9 +44,21 @@ class Course:
             self._first.append(leg)
 
     def settle(self, leg: int) -> None:
-        """A leg has a foothold, or was given up: it need not go first any more."""
+        """A leg has a foothold: it need not go first any more, and those that were put off may try again."""
+        self._put_off.clear()
         if leg in self._first:
             self._first.remove(leg)
+
+    def put_off(self, leg: int) -> None:
+        """A leg has found no foothold: it waits until another one has moved, which changes what it can reach."""
+        if leg in self._first:
+            self._first.remove(leg)
+        self._put_off.add(leg)
+
+    @property
+    def stuck(self) -> bool:
+        """A leg has found no foothold and no other has moved since."""
+        return bool(self._put_off)
 
     @property
     def waiting(self) -> tuple[int, ...]:
@@ -52,7 +66,10 @@ class Course:
         return tuple(self._first)
 
     def next_leg(self, p_WF: np.ndarray, normal_W: np.ndarray) -> int:
-        """The next leg of the crawl that has a step to make; -1 when every foot has reached the goal."""
+        """The next leg of the crawl that has a step to make; -1 when there is none.
+
+        No leg goes more than a step further than one that is put off: the stance must not be drawn apart.
+        """
         if self._first:
             return self._first[0]
         settings = self._settings
@@ -61,7 +78,8 @@ class Course:
         for turn in range(4):
             leg = settings.crawl_order[(self._place + turn) % 4]
             arrived = 0.0 < settings.goal_m <= done[leg]
-            if not arrived and advance[leg] >= settings.step_min_m:
+            waits = leg in self._put_off or any(done[leg] > done[late] + settings.step_m for late in self._put_off)
+            if not arrived and not waits and advance[leg] >= settings.step_min_m:
                 self._place = (self._place + turn + 1) % 4
                 return leg
         return -1

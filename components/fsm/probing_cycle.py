@@ -24,6 +24,8 @@ from surefoot.config.robot import GRAVITY, LEGS, Robot
 _STAND_S = 1.0
 """Time to bring the base over the middle of the feet."""
 
+_NO_FOOTHOLD = "no safe foothold among the alternatives"
+
 
 class ProbingCycle:
     """Takes the robot in one direction, one probed foothold after the other.
@@ -179,8 +181,8 @@ class ProbingCycle:
         feet, normal = self._footing(now), now.estimate.normal_W
         leg = self._course.next_leg(feet, normal)
         if leg < 0:
-            self.finished = True
-            self.stand(now, "every foot has reached the goal")
+            self.finished = not self._course.stuck
+            self.stand(now, "every foot has reached the goal" if self.finished else _NO_FOOTHOLD)
             self._report("stopped", self.reason)
             return
         self._leg, self._candidate, self._around = leg, 0, 0
@@ -547,12 +549,11 @@ class ProbingCycle:
         if self._candidate < len(self._candidates_W):
             self._ask(now, f"alternative {self._candidate} of {len(self._candidates_W) - 1}")
             return
-        self._course.settle(self._leg)
-        why = "no safe foothold among the alternatives"
+        self._course.put_off(self._leg)
         if self.motion.in_air:
-            self._return_safe(now, why)
+            self._return_safe(now, _NO_FOOTHOLD)
         else:
-            self._returned(now, why)
+            self._returned(now, _NO_FOOTHOLD)
 
     def _return_safe(self, now: Observation, reason: str) -> None:
         """The leg goes back to where it stood; a foot that presses is unloaded first, and the MPC knows ahead.
@@ -582,8 +583,15 @@ class ProbingCycle:
         waiting = self._course.waiting
         if waiting and not self._halt:
             self._enter(State.PRE_OPT, now, f"{LEGS[waiting[0]]} lost its foothold")
+        elif self._may_put_off and not self._halt:
+            self._enter(State.PRE_OPT, now, f"{reason}: {LEGS[self._leg]} is put off")
         else:
             self._rest(now, self._halt or reason)
+
+    @property
+    def _may_put_off(self) -> bool:
+        """Another leg may move first: this one stands on ground that has borne it before."""
+        return self._settings.put_off and self._course.stuck and bool(self.motion.grounded.all())
 
     def _rest(self, now: Observation, reason: str) -> None:
         """STOPPED until a new direction is commanded: on four feet, or on three with the leg in the air."""

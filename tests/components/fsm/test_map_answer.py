@@ -74,7 +74,7 @@ def test_without_any_safe_place_the_robot_stops_without_a_step():
     puppet.map = lambda request: {"safe": np.zeros(4, bool)}
     before = puppet.feet.copy()
     assert puppet.run(3.0, lambda: bool(puppet.kinds("stopped")))
-    assert "no safe foothold" in puppet.cycle.reason and len(puppet.kinds("rejected")) == 4
+    assert "no safe foothold" in puppet.cycle.reason and len(puppet.kinds("rejected")) == 16
     np.testing.assert_array_equal(puppet.feet, before)
 
 

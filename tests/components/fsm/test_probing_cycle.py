@@ -132,7 +132,7 @@ def test_a_stance_foot_that_yields_under_a_press_ends_it_and_moves_next():
 
 
 def test_a_foothold_that_failed_does_not_change_what_the_old_one_is_certified_for():
-    puppet = Puppet(Fsm(probe_around=False, alternatives=0))
+    puppet = Puppet(Fsm(probe_around=False, alternatives=0, put_off=False))
     assert puppet.run(20.0, lambda: len(puppet.kinds("accepted")) == 5)
     before = puppet.cycle.certified_n.copy()
     puppet.reach("PROBE")
@@ -289,3 +289,37 @@ def test_low_ground_ahead_lowers_the_base():
         puppet.reach("DETECT_CONTACT")
         heights.append(puppet.cycle.reference.base_to[2])
     assert heights[1] < heights[0] - 0.03
+
+
+def forbid(legs):
+    """A map on which no cell is safe for some legs."""
+    return lambda request: {"safe": ~np.isin(range(4), legs)}
+
+
+def test_a_leg_without_a_foothold_waits_until_another_has_moved():
+    puppet = Puppet()
+    puppet.map = forbid([FL])
+    assert puppet.run(8.0, lambda: len(puppet.kinds("accepted")) == 1)
+    assert puppet.run(8.0, lambda: len(puppet.kinds("accepted")) == 2)
+    assert [event[2]["leg"] for event in puppet.kinds("accepted")] == [RL, RR]
+    assert "FL is put off" in [event for event in puppet.kinds("transition") if event[3] == "PRE_OPT"][-2][1]
+    puppet.map = forbid([])
+    assert puppet.run(16.0, lambda: FL in [event[2]["leg"] for event in puppet.kinds("accepted")])
+
+
+def test_no_leg_runs_away_from_one_that_finds_no_foothold():
+    puppet = Puppet()
+    start = puppet.feet.copy()
+    puppet.map = forbid([FL])
+    puppet.reach("STOPPED", 200.0)
+    assert "no safe foothold" in puppet.cycle.reason and not puppet.cycle.finished
+    advance = (puppet.feet - start)[:, 0]
+    assert advance[FL] == 0.0 and 0.05 < advance.max() < 0.25
+    assert puppet.status == [STANCE] * 4
+
+
+def test_without_putting_off_a_leg_without_a_foothold_stops_the_robot():
+    puppet = Puppet(Fsm(probe_around=False, put_off=False))
+    puppet.map = forbid([RL])
+    puppet.reach("STOPPED", 3.0)
+    assert len(puppet.kinds("rejected")) == 4 and not puppet.kinds("accepted")

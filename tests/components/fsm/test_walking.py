@@ -99,7 +99,7 @@ def test_a_plank_that_gives_way_is_left_and_another_foothold_found():
 def test_without_a_foothold_the_leg_returns_and_the_robot_stops():
     # The one candidate lies 4 cm beyond the hinge of a board on a spring too weak for it.
     weak = Terrain(kind="planks", planks=Planks(start_offset_m=0.0, stiffness=60.0))
-    fsm = Fsm(crawl_order=(1, 2, 0, 3), alternatives=0, probe_around=False)
+    fsm = Fsm(crawl_order=(1, 2, 0, 3), alternatives=0, probe_around=False, put_off=False)
     run = Run(Deployment(terrain=weak, fsm=fsm))
     stopped = run.until(15.0, "stopped")
     assert stopped and "no safe foothold" in stopped[0].reason
