@@ -18,12 +18,16 @@ from surefoot.components.fsm.questions import Questions
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
 from surefoot.components.fsm.static_limit import static_limit
+from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.components.ocp.certified_load import normal_force_max
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import GRAVITY, LEGS, Robot
 
 _STAND_S = 1.0
 """Time to bring the base over the middle of the feet."""
+
+_STOPPED_SHARE = 0.5
+"""A swinging foot slower than this share of its planned velocity has been stopped by something."""
 
 _NO_FOOTHOLD = "no safe foothold among the alternatives"
 
@@ -319,15 +323,25 @@ class ProbingCycle:
         settings, reference, leg = self._settings, self.reference, self._leg
         due = now.t >= reference.swing_t1 - LAND_AHEAD_S
         if now.estimate.contact[leg]:
-            # On its way back the foot knows where the ground is: what it meets before is in its way.
-            back = self.state == State.RETURN_SAFE
             armed = reference.swing_t0 + settings.contact_armed * (reference.swing_t1 - reference.swing_t0)
-            # In mid-swing the leg's own inertia looks like a light contact: only a firm one counts as early.
-            if due or (not back and now.t >= armed and now.normal_force(leg) > settings.early_contact_n):
+            if due or (now.t >= armed and self._met_early(now)):
                 self._touched(now)
                 return
         if due:
             self._search_below(now)
+
+    def _met_early(self, now: Observation) -> bool:
+        """The swinging foot has met ground before its time.
+
+        In mid-swing the leg's own inertia looks like a contact, eq. (7) being quasi-static: only a firm one
+        counts, and only of a foot that has been stopped. On its way back the foot knows where the ground is: what
+        it meets before is in its way.
+        """
+        leg = self._leg
+        if self.state == State.RETURN_SAFE or now.normal_force(leg) <= self._settings.early_contact_n:
+            return False
+        _, planned, _ = SwingSpline(self.reference).sample(np.array([now.t]))
+        return float(now.estimate.v_WF[leg] @ planned[0]) < _STOPPED_SHARE * float(planned[0] @ planned[0])
 
     def _search_below(self, now: Observation) -> None:
         settings, foot = self._settings, now.estimate.p_WF[self._leg]

@@ -1,11 +1,14 @@
 """The paths of Fig. 6 that a good walk never takes: stops, late collapses, no way back, time-outs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from puppet import Puppet
 
 from surefoot.bus.messages import LegStatus
 from surefoot.components.fsm.support_triangle import SupportTriangle
+from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.config.fsm import Fsm
 
 STANCE, SWING, PROBING, COLLAPSING = LegStatus.STANCE, LegStatus.SWING, LegStatus.PROBING, LegStatus.COLLAPSING
@@ -323,3 +326,17 @@ def test_without_putting_off_a_leg_without_a_foothold_stops_the_robot():
     puppet.map = forbid([RL])
     puppet.reach("STOPPED", 3.0)
     assert len(puppet.kinds("rejected")) == 4 and not puppet.kinds("accepted")
+
+
+@pytest.mark.parametrize(("share", "met"), [(1.0, False), (0.8, False), (0.1, True)])
+def test_only_a_foot_that_has_been_stopped_has_met_ground_early(share, met):
+    puppet = Puppet()
+    puppet.reach("DETECT_CONTACT")
+    assert puppet.run(2.0, lambda: puppet.t > puppet.cycle.reference.swing_t0 + 0.36)
+    now = puppet.observe()
+    _, planned, _ = SwingSpline(puppet.cycle.reference).sample(np.array([now.t]))
+    force_W, v_WF, contact = np.tile([0.0, 0.0, 30.0], (4, 1)), np.zeros((4, 3)), np.ones(4, bool)
+    v_WF[RL] = share * planned[0]
+    assert planned[0, 2] < -0.05
+    puppet.cycle.step(replace(now, estimate=replace(now.estimate, force_W=force_W, v_WF=v_WF, contact=contact)))
+    assert (puppet.cycle.state == "PROBE") == met
