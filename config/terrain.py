@@ -184,7 +184,7 @@ class Edge(Approach):
     distance_spread_m: Annotated[float, Within(0.0, 0.5)] = 0.025  # drawn uniform +- this
     drop_min_m: Annotated[float, Within(0.0, 0.3)] = 0.02  # drawn between the two
     drop_max_m: Annotated[float, Within(0.0, 0.3)] = 0.04
-    length_m: Length = 0.5  # until it counts as crossed; the lower ground goes on
+    length_m: Length = 0.25  # until it counts as crossed; the lower ground goes on
     start_offset_m: Offset = 0.0
 
     def __post_init__(self) -> None:

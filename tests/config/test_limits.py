@@ -222,7 +222,7 @@ TOGETHER = {
     "terrain.trap.load_min_n=30": r"^terrain\.trap: load_min_n = 30\.0 is above load_max_n = 8\.0",
     "terrain.edge.drop_min_m=0.1": r"^terrain\.edge: drop_min_m = 0\.1 is above drop_max_m = 0\.04",
     "terrain.edge.distance_m=0.01": r"distance_spread_m = 0\.025 is above distance_m = 0\.01",
-    "terrain.edge.distance_m=0.6": r"distance_m = 0\.6 \+- .* not within length_m = 0\.5",
+    "terrain.edge.distance_m=0.6": r"distance_m = 0\.6 \+- .* not within length_m = 0\.25",
     "terrain.foam.sink_max_m=0.0015": r"^terrain\.foam: sink_min_m = 0\.002 is above sink_max_m = 0\.0015",
     "terrain.foam.thickness_m=0.015": r"sink_max_m = 0\.025 is above thickness_m = 0\.015",
     "terrain.lane.sections=[]": r"^terrain\.lane: sections = \[\]: name at least one",
