@@ -56,6 +56,7 @@ class FootholdPlanner:
         yaw: float,
         com_B: np.ndarray,
         reserve_W: np.ndarray,
+        depth_m: float = 0.0,
     ) -> np.ndarray | None:
         """Base pose that keeps the centre of mass inside the other three feet and reaches a foothold.
 
@@ -68,6 +69,7 @@ class FootholdPlanner:
             p_WF: (4, 3) present feet [m].
             com_B: (3,) centre of mass from the trunk's origin, in the world's axes [m].
             reserve_W: (3,) what must be in reach beyond the foothold: the point probed in front of it [m].
+            depth_m: how much lower than that its ground may lie, for the leg at its full length [m].
 
         Returns:
             (6,) the pose, or None when no height above the least reaches it.
@@ -83,7 +85,12 @@ class FootholdPlanner:
         while height >= self._lowest - 1e-9:
             pose = self.pose(base_xy, carrying, normal_W, yaw, height)
             feet[leg] = foothold_W + reserve_W
-            if self.leg_lengths(pose, feet).max() <= settings.leg_length_plan_m:
+            deep = feet.copy()
+            deep[leg] -= depth_m * normal_W
+            if (
+                self.leg_lengths(pose, feet).max() <= settings.leg_length_plan_m
+                and self.leg_lengths(pose, deep)[leg] <= settings.leg_length_max_m
+            ):
                 return pose
             height -= settings.base_height_step_m
         return None

@@ -221,9 +221,10 @@ class ProbingCycle:
             self._next_candidate(now)
             return
         around = settings.around_radius_m if settings.probing and settings.probe_around else 0.0
-        deeper = 0.0 if answer.region_active[leg] else settings.depth_reserve_m  # a map knows how deep it is
-        beyond = around * np.append(self._course.direction, 0.0) - deeper * normal
-        pose = self._planner.support_pose(leg, foothold, feet, normal, self._course.heading, now.com_B, beyond)
+        ahead = around * np.append(self._course.direction, 0.0)
+        depth = 0.0 if answer.region_active[leg] else settings.depth_reserve_m  # a map knows how deep it is
+        heading = self._course.heading
+        pose = self._planner.support_pose(leg, foothold, feet, normal, heading, now.com_B, ahead, depth)
         if pose is None:
             self._event("rejected", "out of reach at every base height", now, foothold)
             self._next_candidate(now)

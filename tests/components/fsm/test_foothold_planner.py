@@ -62,3 +62,15 @@ def test_a_far_foothold_lowers_the_base_and_a_farther_one_is_refused(planner):
     far = planner.support_pose(1, feet[1] + [0.25, 0, 0], feet, UP, 0.0, np.zeros(3), AHEAD)
     assert far[2] < near[2] - 0.01
     assert planner.support_pose(1, feet[1] + [0.60, 0, 0], feet, UP, 0.0, np.zeros(3), AHEAD) is None
+
+
+def test_ground_that_may_lie_deep_is_within_the_leg_at_its_full_length(planner):
+    feet = feet_under(planner)
+    goal, depth = feet[1] + [0.20, 0.0, 0.0], 0.10
+    level = planner.support_pose(1, goal, feet, UP, 0.0, np.zeros(3), AHEAD)
+    deep = planner.support_pose(1, goal, feet, UP, 0.0, np.zeros(3), AHEAD, depth)
+    assert deep[2] < level[2] - 0.005
+    reached = feet.copy()
+    reached[1] = goal + AHEAD - depth * UP
+    assert planner.leg_lengths(level, reached)[1] > SETTINGS.leg_length_max_m
+    assert planner.leg_lengths(deep, reached)[1] <= SETTINGS.leg_length_max_m
