@@ -49,6 +49,7 @@ class Ocp:
     force_limits: Barrier = Barrier(1.0, 0.5)  # [N]
     support_polygon: Barrier = Barrier(100.0, 0.02)  # [m]
     probing_force: Barrier = Barrier(0.7, 0.7)  # [N]
+    certified_load: Weight = 0.1  # of a normal force above what its foothold is certified for [1/N^2]
     friction: Friction = 0.5  # mu_c of eq. (3)
     cone_regularisation_n2: ConeRounding = 4.0  # rounds the cone's tip; asks f_n of at least its root over mu_c
     force_min_n: LeastForce = 5.0

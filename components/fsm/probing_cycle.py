@@ -19,7 +19,7 @@ from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
 from surefoot.components.fsm.static_limit import static_limit
 from surefoot.components.gait.swing_spline import SwingSpline
-from surefoot.components.ocp.certified_load import normal_force_max
+from surefoot.components.ocp.certified_load import load_limit
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import GRAVITY, LEGS, Robot
 
@@ -408,7 +408,7 @@ class ProbingCycle:
         start: a foot that leaves the ground under full load throws the base over.
         """
         settings, press, normal = self._settings, self._press, self.reference.normal_W
-        caps = normal_force_max(self._force_max_n, self._weight_n)
+        caps = load_limit(self._force_max_n)
         inside = settings.margin_m + settings.margin_extra_m
         limit = static_limit(self.reference.p_WF, self._leg, inside, self._weight_n, caps[3 - self._leg])
         press.limit(settings.force_over_static * limit, normal)

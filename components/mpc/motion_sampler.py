@@ -6,7 +6,7 @@ import numpy as np
 
 from surefoot.bus.messages import MotionReference
 from surefoot.components.gait.swing_spline import SwingSpline
-from surefoot.components.ocp.certified_load import normal_force_max
+from surefoot.components.ocp.certified_load import load_limit
 from surefoot.components.ocp.foot_placement import LANDING_SHARE
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
@@ -54,7 +54,7 @@ class MotionSampler:
             p_WF=p_WF,
             v_WF=v_WF,
             force_W=force_W,
-            force_max_n=np.tile(normal_force_max(reference.force_max_n, self._weight), (nodes, 1)),
+            force_max_n=np.tile(load_limit(reference.force_max_n), (nodes, 1)),
             normal_W=reference.normal_W,
             support_leg=np.where(supported, reference.support_leg, -1),
             support_margin_m=reference.support_margin_m,

@@ -10,10 +10,7 @@ from surefoot.components.ocp.term import Nodes
 
 
 class ForceLimits:
-    """f_min <= f_n <= f_max [N] for every stance leg; Table I: mu 1, delta 0.5 N.
-
-    f_max is the robot's limit, or what the leg's foothold is certified for where that is less.
-    """
+    """f_min <= f_n <= f_max [N] for every stance leg; Table I: mu 1, delta 0.5 N."""
 
     name = "force_limits"
 
@@ -37,4 +34,4 @@ class ForceLimits:
 
     def _margins(self, nodes: Nodes) -> tuple[np.ndarray, np.ndarray]:
         along = nodes.iterate.force_W @ nodes.reference.normal_W
-        return along - self._minimum, np.minimum(self._maximum, nodes.reference.force_max_n[: nodes.N]) - along
+        return along - self._minimum, self._maximum - along

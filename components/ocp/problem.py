@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surefoot.components.ocp.centroidal_dynamics import CentroidalDynamics, Trajectory
+from surefoot.components.ocp.certified_load import CertifiedLoad
 from surefoot.components.ocp.foot_placement import FootPlacement
 from surefoot.components.ocp.force_limits import ForceLimits
 from surefoot.components.ocp.friction_cone import FrictionCone
@@ -31,7 +32,7 @@ _FORCE_FLOOR_N = 1.0
 
 
 def compose(settings: Ocp, robot: Robot) -> tuple[Tracking, tuple[Term, ...]]:
-    """Eq. (2) and the inequalities of eqs. (3)-(6) with the figures of Table I."""
+    """Eq. (2), the inequalities of eqs. (3)-(6) with the figures of Table I, and the loads of the footholds."""
 
     def barrier(name: str) -> RelaxedBarrier:
         figures = getattr(settings, name)
@@ -46,6 +47,7 @@ def compose(settings: Ocp, robot: Robot) -> tuple[Tracking, tuple[Term, ...]]:
         JointVelocityLimits(barrier("joint_velocity"), settings.joint_velocity_limit),
         SupportPolygon(barrier("support_polygon")),
         ProbingForce(barrier("probing_force")),
+        CertifiedLoad(settings.certified_load),
     )
 
 
@@ -210,8 +212,7 @@ class Problem:
         """Forces clipped to the limits and the cone; the defects of the next iteration absorb the change."""
         normal, settings = reference.normal_W, self.settings
         along = force_W @ normal
-        most = np.minimum(settings.force_max_n, reference.force_max_n[: self.N])
-        clipped = np.clip(along, _FORCE_FLOOR_N, most)
+        clipped = np.clip(along, _FORCE_FLOOR_N, settings.force_max_n)
         tangential = force_W - along[..., None] * normal
         length = np.sqrt((tangential**2).sum(axis=-1))
         shrink = np.minimum(1.0, settings.friction * clipped / np.maximum(length, 1e-9))

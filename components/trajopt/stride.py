@@ -6,7 +6,7 @@ import numpy as np
 
 from surefoot.bus.messages import MotionReference, PlanRequest
 from surefoot.components.gait.swing_spline import SwingSpline
-from surefoot.components.ocp.certified_load import normal_force_max
+from surefoot.components.ocp.certified_load import load_limit
 from surefoot.components.ocp.foot_placement import LANDING_SHARE
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
@@ -75,7 +75,7 @@ class Stride:
             p_WF=p_WF,
             v_WF=v_WF,
             force_W=force_W,
-            force_max_n=normal_force_max(certified_n, self._weight),
+            force_max_n=load_limit(certified_n),
             normal_W=request.normal_W,
             support_leg=off,
             support_margin_m=0.0,

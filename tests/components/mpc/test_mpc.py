@@ -92,7 +92,7 @@ def test_a_swing_to_a_point_outside_its_region_is_planned_to_come_down_inside():
 def test_certified_loads_cap_the_nodes_and_unknown_ones_do_not():
     sample = MotionSampler(ROBOT, 67, 0.015).sample
     nodes = sample(replace(STAND, force_max_n=np.array([130.0, 0.0, 30.0, 119.0])), 0.0)
-    np.testing.assert_allclose(nodes.force_max_n, np.tile([130.0, np.inf, 0.45 * WEIGHT, 119.0], (68, 1)))
+    np.testing.assert_allclose(nodes.force_max_n, np.tile([130.0, np.inf, 30.0, 119.0], (68, 1)))
     assert np.isinf(sample(STAND, 0.0).force_max_n).all()
 
 
@@ -105,7 +105,7 @@ def test_the_policy_loads_no_foot_above_its_certificate():
         for tick in range(30):
             policy = loop.tick(0.01 * tick, replace(lean, force_max_n=force_max_n))
         most.append(policy.u[:60, 2].max())
-    assert most[0] > 125.0 and most[1] < 116.0
+    assert most[0] > 125.0 and most[1] < most[0] - 15.0
 
 
 def test_probing_forces_follow_each_other_with_a_blend():
