@@ -167,7 +167,7 @@ def test_a_foot_is_asked_for_little_more_than_its_foothold_is_certified_for():
 @pytest.mark.parametrize("feet", [4, 3])
 def test_feet_carry_the_robot_whatever_they_are_certified_for(feet):
     reference, measured = standing() if feet == 4 else on_three_feet()
-    reference.force_max_n[:] = 30.0
+    reference.force_max_n[:] = 60.0
     step, _ = Problem(Ocp(), ROBOT, 67).converge(reference, measured, 15, 1e-4)
     np.testing.assert_allclose(step.iterate.force_W[10:40].sum(axis=1)[:, 2], WEIGHT, rtol=0.04)
     assert np.abs(step.iterate.p_WB - measured.p_WB)[:40].max() < 0.01
