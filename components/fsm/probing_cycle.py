@@ -19,7 +19,6 @@ from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
 from surefoot.components.fsm.static_limit import static_limit
 from surefoot.components.gait.swing_spline import SwingSpline
-from surefoot.components.ocp.certified_load import load_limit
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import GRAVITY, LEGS, Robot
 
@@ -408,9 +407,8 @@ class ProbingCycle:
         start: a foot that leaves the ground under full load throws the base over.
         """
         settings, press, normal = self._settings, self._press, self.reference.normal_W
-        caps = load_limit(self._force_max_n)
         inside = settings.margin_m + settings.margin_extra_m
-        limit = static_limit(self.reference.p_WF, self._leg, inside, self._weight_n, caps[3 - self._leg])
+        limit = static_limit(self.reference.p_WF, self._leg, inside, self._weight_n)
         press.limit(settings.force_over_static * limit, normal)
         forces = [max(now.normal_force(self._leg), 5.0) * normal, *press.asked_W]
         begin = now.t + settings.settle_s
@@ -701,8 +699,12 @@ class ProbingCycle:
 
     @property
     def _force_max_n(self) -> np.ndarray:
-        """(4,) what each foothold is certified for [N]; 0, no cap, under test, in the air or sinking."""
-        capped = self.motion.trusted & self._settings.cap_forces
+        """(4,) what each foothold is certified for [N]; 0, no cap, under test, in the air or sinking.
+
+        While a foot presses there is no cap: the foot across bears that press and (W m)/h more, whatever it is
+        certified for.
+        """
+        capped = self.motion.trusted & (self._settings.cap_forces and self.state != State.PROBE)
         return np.where(capped, self.certified_n, 0.0)
 
     def _footing(self, now: Observation) -> np.ndarray:

@@ -5,23 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 
-def static_limit(
-    p_WF: np.ndarray, leg: int, inside_m: float, weight_n: float, opposite_max_n: float = np.inf
-) -> float:
+def static_limit(p_WF: np.ndarray, leg: int, inside_m: float, weight_n: float) -> float:
     """Normal force of one foot when its two neighbours are unloaded and the opposite foot bears the rest [N].
 
     Moments about the diagonal of the neighbours: f = W (h_o - m) / (h_o + h), with the foot h outside the
     diagonal, the opposite foot h_o and the centre of mass m on the other side of it. On a rectangle that is
     (W/2)(1 - m/h). It falls fast when the opposite foot stands close to the diagonal, as after a long step.
 
-    However the neighbours are loaded, the opposite foot bears (f h + W m) / h_o, which may be limited too.
-
     Args:
         p_WF: (4, 3) feet [m].
         leg: the foot that presses.
         inside_m: distance that the centre of mass must keep from the diagonal [m].
         weight_n: the robot's [N].
-        opposite_max_n: most that the opposite foot may bear [N].
 
     Returns:
         The limit, at least 0 [N]; 0 where the foot and the opposite one are not on two sides of the diagonal.
@@ -33,5 +28,4 @@ def static_limit(
     if outside * beyond >= 0.0:
         return 0.0
     h, h_opposite = abs(outside), abs(beyond)
-    alone = weight_n * (h_opposite - inside_m) / (h + h_opposite)
-    return float(max(min(alone, (opposite_max_n * h_opposite - weight_n * inside_m) / h), 0.0))
+    return float(weight_n * max(h_opposite - inside_m, 0.0) / (h + h_opposite))

@@ -75,9 +75,9 @@ def test_a_foothold_is_capped_from_its_acceptance_until_the_foot_leaves_it():
     puppet.reach("MOVE")
     assert puppet.cycle.reference.swing_leg == RL and caps(puppet)[RL] == held_n
     puppet.reach("DETECT_CONTACT")
-    assert caps(puppet)[RL] == 0.0 and (caps(puppet)[[0, 1, 3]] > 70.0).all()
+    assert caps(puppet)[RL] == 0.0 and (caps(puppet)[[0, 1, 3]] > 90.0).all()
     puppet.reach("PROBE")
-    assert caps(puppet)[RL] == 0.0  # it has to be pressed harder than anyone knows it to bear
+    assert not caps(puppet).any()  # the foot across bears the press, whatever it is certified for
 
 
 def test_a_foot_that_is_put_back_stands_on_what_was_certified_before():
