@@ -59,7 +59,7 @@ class ElevationMap(Component):
         if self._last is not None and self._last.valid:
             self.map.follow(self._last.p_WB)
         for event in inbox.new("fsm/event"):
-            self.map.note(event, self._last)
+            self.map.note(event)
         if self._vision:
             self._look(t, inbox)
             if self.map.seen_t is not None and t >= self._publish_t:

@@ -45,9 +45,9 @@ class TerrainMap:
         """Keep the robot in the middle."""
         self._torus.move_to(p_WB[:2])
 
-    def note(self, event: FsmEvent, estimate: StateEstimate | None) -> None:
+    def note(self, event: FsmEvent) -> None:
         """Take in what the state machine has found out about the ground."""
-        self._loads.note(event, estimate)
+        self._loads.note(event)
 
     def see(self, frame: DepthFrame, estimate: StateEstimate, reference: MotionReference | None) -> None:
         """Take in an image; `estimate` is of the same time."""

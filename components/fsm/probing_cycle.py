@@ -151,6 +151,7 @@ class ProbingCycle:
     def step(self, now: Observation) -> None:
         """Advance by one tick."""
         self._watch.update(now.estimate.p_WF, self.motion.trusted)
+        self._watch.load(now.estimate.force_W @ now.estimate.normal_W, self.motion.bearing)
         if self._settings.probing:
             self._watch_stance(now)
             self._watch_balance(now)
@@ -630,9 +631,9 @@ class ProbingCycle:
             self._gave_way(int(leg), float(moved[leg]), now)
 
     def _gave_way(self, leg: int, moved: float, now: Observation) -> None:
-        foot = now.estimate.p_WF[leg]
+        foot, borne_n = now.estimate.p_WF[leg], float(self._watch.borne_n[leg])
         why = f"{LEGS[leg]} moved {1e2 * moved:.1f} cm after it was accepted"
-        self._report("late_collapse", why, leg=leg, p_WF=foot.copy(), displacement_m=moved)
+        self._report("late_collapse", why, leg=leg, p_WF=foot.copy(), displacement_m=moved, held_n=borne_n)
         self._watch.sunk[leg] |= self.motion.trusted[leg]
         self.motion.distrust(leg, now)
         self._course.put_first(leg)

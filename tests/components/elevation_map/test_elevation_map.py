@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from made_up_ground import NOMINAL_BF, RADIUS
 from sight import Sight, deployment, estimate
 
 from surefoot.bus.messages import DepthFrame, FootholdRequest, FsmEvent
@@ -37,8 +38,9 @@ class Desk:
         self.process.step(t, self.inbox, self._outbox)
         self.inbox.clear_new()
 
-    def ask(self, t, target_WF=AHEAD):
-        self.step(t, request=FootholdRequest(t=t, valid=True, id=7, target_WF=np.array(target_WF)))
+    def ask(self, t, target_WF=AHEAD, **figures):
+        request = FootholdRequest(t=t, valid=True, id=7, target_WF=np.array(target_WF), **figures)
+        self.step(t, request=request)
         key, answer = self.said[-1]
         assert key == "foothold/regions" and answer.id == 7 and answer.valid
         return answer
@@ -168,6 +170,31 @@ def test_a_target_outside_the_map_or_where_nothing_was_seen_has_no_map(image):
     np.testing.assert_array_equal(answer.foothold_WF, targets)
     assert [reason.startswith("no map there") for reason in answer.reasons] == [False, True, False, True]
     assert not answer.region_active[[1, 3]].any() and answer.safe[[1, 3]].all()
+
+
+def test_what_gave_way_is_not_offered_again_and_what_has_held_is_certified(image):
+    desk = Desk()
+    desk.step(0.02, depth=image, estimates=estimate(0.0, POSE))
+    stand = NOMINAL_BF + [0.36, 0.0, RADIUS - NOMINAL_BF[0, 2]]
+    base = np.array([0.36, 0.0, stand[0, 2] - NOMINAL_BF[0, 2], 0.0, 0.0, 0.0])
+    figures = {"p_WF": stand - [0.1, 0.0, 0.0], "base_target": base, "normal_W": np.array([0.0, 0.0, 1.0])}
+
+    def told(t, kind, leg, **loads):
+        verdict = FsmEvent(t=t, valid=True, kind=kind, leg=leg, p_WF=stand[leg], **loads)
+        desk.step(t, event=verdict, depth=dataclasses.replace(image, t=t), estimates=estimate(t, POSE))
+        return desk.ask(t, stand, **figures)
+
+    answer = told(0.1, "accepted", 0, held_n=88.0)
+    assert answer.safe.all() and answer.held_n.tolist() == [88.0, 0.0, 0.0, 0.0]
+    np.testing.assert_array_equal(answer.foothold_WF[:2, :2], stand[:2, :2])
+    for leg, kind, loads in ((1, "collapse", {"asked_n": 70.0}), (0, "late_collapse", {"held_n": 60.0})):
+        answer = told(0.2 + 0.1 * leg, kind, leg, **loads)
+        moved = np.hypot(*(answer.foothold_WF[leg] - stand[leg])[:2])
+        assert answer.safe[leg] and answer.held_n[leg] == 0.0
+        assert moved > RADIUS and "the target's cell is collapsed" in answer.reasons[leg]
+        # No point of the region is nearer to the place than a foot is wide.
+        A, b = answer.region_a[leg], answer.region_b[leg]
+        assert (A @ stand[leg] + b).min() < -RADIUS
 
 
 def test_the_map_is_told_twice_a_second(image):
