@@ -21,7 +21,8 @@ Tolerance = Annotated[float, Within(0.001, 0.5)]  # 0 would be met by no measure
 class Vfa:
     """Visual foothold adaptation (Sec. II-A): what a cell must be to be safe."""
 
-    unmapped_share: Share = 0.5  # of a heightmap's cells unknown: above it there is no map, the plane is allowed
+    # Of a heightmap's cells unknown or older than age_max_s: above it there is no map, the plane is allowed.
+    unmapped_share: Share = 0.5
     std_max_m: Tolerance = 0.02  # of a cell's height
     # Hind feet come to what the camera saw ahead of the front feet a metre of walking, or seven minutes, before.
     age_max_s: Annotated[float, Within(1.0, 1e5)] = 600.0

@@ -179,6 +179,19 @@ def test_without_a_map_the_whole_plane_is_allowed():
 
 
 @pytest.mark.parametrize(("columns", "active"), [(7, True), (8, False)])
+def test_what_was_seen_too_long_ago_is_no_map(columns, active):
+    """A robot that has rested for long must be able to go on: its hind feet's ground is not seen again."""
+    ground = Ground()
+    ground.age[ground.x > 0.2 + CELL * (7.5 - columns)] = 1e4
+    ground.height[ground.cell(0.06, 0.06)] = np.nan  # the heightmap's first cell
+    answer = ground.ask(**AT)
+    assert answer.safe[0] and answer.region_active[0] == active
+    if not active:
+        np.testing.assert_array_equal(answer.foothold_WF[0], AT["targets"][0])
+        assert answer.reasons[0] == "no map there: 1 of 225 cells unknown, 120 seen more than 600 s ago"
+
+
+@pytest.mark.parametrize(("columns", "active"), [(7, True), (8, False)])
 def test_half_a_map_is_a_map_and_less_is_none(columns, active):
     ground = Ground(lambda x, y: np.where(x > 0.2 + CELL * (7.5 - columns), np.nan, 0.0))
     answer = ground.ask(**AT)
