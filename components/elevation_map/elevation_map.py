@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from surefoot.bus.codec import decode, encode
 from surefoot.bus.messages import FootholdRegions, FootholdRequest, StateEstimate
 from surefoot.bus.topics import TOPICS
 from surefoot.components.component import Component, Inbox, Outbox
@@ -70,10 +71,19 @@ class ElevationMap(Component):
             outbox.publish("foothold/regions", self._answer(request, t))
 
     def snapshot(self) -> dict[str, Any]:
-        return self.map.snapshot(heights=self._vision)
+        state = self.map.snapshot(heights=self._vision)
+        state["last"] = encode(self._last) if self._last is not None else b""
+        if self._vision:
+            state |= {"waiting": self._match.snapshot(), "refused": self._refused, "publish_t": self._publish_t}
+        return state
 
     def restore(self, state: dict[str, Any]) -> None:
         self.map.restore(state)
+        if state["last"]:
+            self._last = decode(StateEstimate, state["last"])
+        if self._vision:
+            self._match.restore(state["waiting"])
+            self._refused, self._publish_t = state["refused"], state["publish_t"]
 
     def _heed(self, estimate: StateEstimate) -> None:
         """An estimate that starts again leaves the map behind in a frame that is gone."""

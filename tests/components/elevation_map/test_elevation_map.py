@@ -7,7 +7,9 @@ import pytest
 from made_up_ground import NOMINAL_BF, RADIUS
 from sight import Sight, deployment, estimate
 
+from surefoot.bus.codec import encode
 from surefoot.bus.messages import DepthFrame, FootholdRequest, FsmEvent
+from surefoot.components.clock_messages import pack_snapshot, unpack_snapshot
 from surefoot.components.component import Inbox, Outbox
 from surefoot.components.elevation_map.elevation_map import ElevationMap
 
@@ -246,6 +248,40 @@ def test_another_process_takes_over_with_the_map(image):
     mine, other = (each.process.map.message(0.04) for each in (desk, heir))
     np.testing.assert_array_equal(mine.height_m, other.height_m)
     assert heir.ask(0.06).reasons == desk.ask(0.06).reasons
+
+
+def script(image):
+    """Releases of a walk: images before and after the estimates of their times, questions, a verdict."""
+    for index in range(40):
+        t, inputs = 0.02 * index, {}
+        p_WB = np.add(POSE, [0.1 * t, 0.0, 0.002 * np.sin(9.0 * t)])
+        covariance = np.zeros((9, 9))
+        covariance[2, 2] = 1e-6 * (1.0 + t)
+        # The estimates of the cycles since the last release; that of the release itself is not there yet.
+        inputs["estimates"] = [
+            estimate(round(t - late, 3), p_WB, covariance=covariance) for late in np.arange(0.02, 0.0, -0.002)
+        ]
+        if index % 4 == 1:
+            inputs["depth"] = dataclasses.replace(image, t=round(t - 0.006 * (index % 8 == 1), 3))
+        if index == 20:
+            inputs["event"] = FsmEvent(t=t, valid=True, kind="collapse", leg=0, p_WF=AHEAD[0], asked_n=70.0)
+        if index > 20:
+            inputs["request"] = FootholdRequest(t=t, valid=True, id=index, target_WF=AHEAD)
+        yield t, inputs
+
+
+def test_a_process_that_is_restarted_after_every_step_says_the_same(image):
+    steady, restarted = Desk(), Desk()
+    for t, inputs in script(image):
+        steady.step(t, **inputs)
+        restarted.step(t, **inputs)
+        payload = pack_snapshot(restarted.process.snapshot())
+        restarted.process = ElevationMap(deployment())
+        restarted.process.restore(unpack_snapshot(payload))
+    assert steady.seen == pytest.approx(0.74) and len(steady.said) > 20
+    assert [(key, encode(message)) for key, message in restarted.said] == [
+        (key, encode(message)) for key, message in steady.said
+    ]
 
 
 def test_a_frame_of_another_size_is_as_good(image):
