@@ -43,6 +43,8 @@ class ElevationMap(Component):
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
         self._vision = deployment.run.vision
+        # In simulated time a restarted estimator takes up where its predecessor was: its frame is the same.
+        self._new_boot_new_frame = deployment.run.clock == "monotonic"
         if self._vision:
             self.complete = ("state/estimate",)  # an image needs the very one of its time
         self._settings = deployment.elevation_map
@@ -96,7 +98,8 @@ class ElevationMap(Component):
 
     def _jumped(self, last: StateEstimate, estimate: StateEstimate) -> bool:
         reach = self._settings.jump_m + _BASE_SPEED * abs(estimate.t - last.t)
-        return bool(estimate.boot != last.boot or np.linalg.norm(estimate.p_WB - last.p_WB) > reach)
+        anew = self._new_boot_new_frame and estimate.boot != last.boot
+        return bool(anew or np.linalg.norm(estimate.p_WB - last.p_WB) > reach)
 
     def _look(self, t: float, inbox: Inbox) -> None:
         for frame in inbox.new("hw/depth"):

@@ -20,8 +20,8 @@ AHEAD = np.array([[0.6, 0.15, 0.0], [0.6, -0.15, 0.0], [0.8, 0.15, 0.0], [0.8, -
 class Desk:
     """A map process and what it has said."""
 
-    def __init__(self, vision=True):
-        self.process = ElevationMap(deployment(vision))
+    def __init__(self, **given):
+        self.process = ElevationMap(deployment(**given))
         self.inbox = Inbox(self.process.inputs)
         self.said = []
         self._outbox = Outbox(self.process.outputs, lambda key, message: self.said.append((key, message)))
@@ -222,13 +222,20 @@ def test_the_map_is_told_twice_a_second(image):
     ],
 )
 def test_an_estimate_that_starts_again_leaves_no_map(image, later):
-    desk = Desk()
+    desk = Desk(clock="monotonic")
     gone = FsmEvent(t=0.0, valid=True, kind="collapse", leg=0, p_WF=AHEAD[0], asked_n=70.0)
     desk.step(0.02, depth=image, estimates=[estimate(0.0, POSE), estimate(0.02, POSE)], event=gone)
     assert desk.seen == 0.0
     desk.step(0.04, estimates=later)
     grid = desk.process.map.message(0.04)
     assert desk.seen is None and np.isnan(grid.height_m).all() and not grid.collapsed_n.any()
+
+
+def test_in_simulated_time_a_restarted_estimator_goes_on_in_the_same_frame(image):
+    desk = Desk()
+    desk.step(0.02, depth=image, estimates=[estimate(0.0, POSE), estimate(0.02, POSE)])
+    desk.step(0.04, estimates=dataclasses.replace(estimate(0.022, POSE), boot=1))
+    assert desk.seen == 0.0 and np.isfinite(desk.process.map.message(0.04).height_m).any()
 
 
 def test_a_walking_base_is_no_jump(image):
