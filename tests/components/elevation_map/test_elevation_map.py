@@ -101,6 +101,8 @@ NAN = float("nan")
         ({"depth_m": np.full((60, 80), -1.0, np.float32)}, "no pixel has a depth"),
         ({"depth_m": np.full((60, 80), np.inf, np.float32)}, "no pixel has a depth"),
         ({"p_BC": np.array([0.3, NAN, 0.0])}, "pose is not finite"),
+        ({"p_BC": np.array([0.3, 0.0, -2.5])}, "the camera is 2.52 m from the trunk's origin, limit 2 m"),
+        ({"p_BC": np.full(3, 1e300)}, "from the trunk's origin"),
         ({"quat_BC": np.array([1.0, 0.0, NAN, 0.0])}, "pose is not finite"),
         ({"quat_BC": np.zeros(4)}, "quaternion has length 0.000, not 1"),
         ({"quat_BC": np.array([2.0, 0.0, 0.0, 0.0])}, "quaternion has length 2.000, not 1"),
@@ -128,6 +130,15 @@ def test_single_pixels_that_are_no_numbers_are_left_out(image):
     depth[::2, ::3] = np.nan
     depth[1::4, ::5] = np.inf
     depth[3::4, ::7] = -2.0
+    desk.step(0.02, depth=dataclasses.replace(image, depth_m=depth), estimates=estimate(0.0, POSE))
+    grid = desk.process.map.message(0.02)
+    assert np.isfinite(grid.height_m).sum() > 500 and np.nanmax(np.abs(grid.height_m)) < 0.02
+
+
+@pytest.mark.filterwarnings("error")
+def test_depths_beyond_the_world_are_left_out(image):
+    desk, depth = Desk(), image.depth_m.copy()
+    depth[::2] = 3e38
     desk.step(0.02, depth=dataclasses.replace(image, depth_m=depth), estimates=estimate(0.0, POSE))
     grid = desk.process.map.message(0.02)
     assert np.isfinite(grid.height_m).sum() > 500 and np.nanmax(np.abs(grid.height_m)) < 0.02
@@ -163,11 +174,13 @@ def test_before_the_first_image_and_when_images_stay_away_there_is_no_map(image)
     assert desk.process.trouble == late.reasons[0]
 
 
-def test_a_target_outside_the_map_or_where_nothing_was_seen_has_no_map(image):
+@pytest.mark.parametrize("far", [(1e3, -1e3), (-1e20, 1e20)])
+@pytest.mark.filterwarnings("error")
+def test_a_target_outside_the_map_or_where_nothing_was_seen_has_no_map(image, far):
     desk = Desk()
     desk.step(0.02, depth=image, estimates=estimate(0.0, POSE))
     targets = AHEAD.copy()
-    targets[1, :2], targets[3, :2] = (-0.5, 0.0), (1e3, -1e3)
+    targets[1, :2], targets[3, :2] = (-0.5, 0.0), far
     answer = desk.ask(0.04, targets)
     np.testing.assert_array_equal(answer.foothold_WF, targets)
     assert [reason.startswith("no map there") for reason in answer.reasons] == [False, True, False, True]
