@@ -31,6 +31,7 @@ class Puppet:
         tilt: roll that the estimate claims [rad].
         weak: share of the asked force that the ground really takes.
         map: what a request's answer says otherwise than "blind": fields of `FootholdRegions`.
+        placed: where a plan's footholds (4, 3) are, from its request.
         unanswered: of "regions" and "plan", the questions that nobody answers.
     """
 
@@ -44,6 +45,7 @@ class Puppet:
         self.tilt, self.weak, self.t = 0.0, 1.0, 0.0
         self.events, self.unanswered = [], ()
         self.map = lambda request: {}
+        self.placed = lambda request: request.target_WF
         self.cycle = ProbingCycle(ROBOT, self.settings, self._report)
         self.cycle.stand_up(self.observe())
         if forward:
@@ -105,7 +107,7 @@ class Puppet:
                 valid=True,
                 id=request.id,
                 status="ok",
-                footholds_WF=request.target_WF,
+                footholds_WF=self.placed(request),
                 envelope_W=envelope,
             )
             self.cycle.plan(plan, now)
