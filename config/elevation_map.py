@@ -17,6 +17,10 @@ Frames = Annotated[int, Within(1, 100)]
 Tolerance = Annotated[float, Within(0.001, 0.5)]  # 0 would be met by no measured ground
 
 
+_CELLS_MAX = 250_000
+"""Of a map: every message on map/elevation holds 20 bytes of each, and every image is matched with all of them."""
+
+
 @dataclass(frozen=True)
 class Vfa:
     """Visual foothold adaptation (Sec. II-A): what a cell must be to be safe."""
@@ -61,6 +65,12 @@ class ElevationMap:
     vfa: Vfa = Vfa()
 
     def __post_init__(self) -> None:
+        cells = round(self.length_m / self.cell_m) * round(self.width_m / self.cell_m)
+        if cells > _CELLS_MAX:
+            raise ConfigError(
+                f"length_m = {self.length_m} by width_m = {self.width_m} of cell_m = {self.cell_m} are {cells} "
+                f"cells, at most {_CELLS_MAX}; make the map smaller or its cells larger"
+            )
         rise = self.cell_m * tan(self.vfa.slope_max)
         if rise > self.vfa.edge_max_m:
             raise ConfigError(
