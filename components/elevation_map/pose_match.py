@@ -8,7 +8,10 @@ from surefoot.bus.codec import decode, encode
 from surefoot.bus.messages import DepthFrame, StateEstimate
 
 _KEPT = 128
+"""Estimates: those of a quarter of a second."""
+
 _PATIENCE_S = 0.2
+"""An image whose estimate has not come by then is dropped [s]."""
 
 
 class PoseMatch:
