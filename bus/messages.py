@@ -296,7 +296,7 @@ class ElevationGrid(Message):
     age_s: np.ndarray = array(-1, -1, dtype="float32", doc="since it was seen; NaN never", unit="s", finite=False)
     held_n: np.ndarray = array(-1, -1, dtype="float32", doc="largest load that has held; 0 untested", unit="N")
     collapsed_n: np.ndarray = array(
-        -1, -1, dtype="float32", doc="least load under which it gave way; 0 none", unit="N"
+        -1, -1, dtype="float32", doc="load under which, or less, it gave way; 0 none", unit="N"
     )
     drift_m: float = number("correction of the map's height from the contacts", "m")
 
@@ -318,7 +318,11 @@ class FsmEvent(Message):
     p_WF: np.ndarray = array(3, doc="foot centre at the event", unit="m")
     displacement_m: float = number("from the stored contact position", "m")
     asked_n: float = number("normal force asked", "N")
-    held_n: float = number("largest normal force estimated while held", "N")
+    held_n: float = number(
+        "largest normal force estimated while held; of a late collapse, on the foot since it was accepted or, "
+        "later, set down again: its ground gave way under that or less",
+        "N",
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -71,7 +71,7 @@ def unpack_done(payload: bytes) -> Done:
 
 
 def pack_snapshot(state: dict[str, Any]) -> bytes:
-    """Bytes of a component's snapshot: numbers, strings, lists and arrays by name; empty for an empty one."""
+    """Bytes of a snapshot: numbers, strings, bytes, lists and arrays by name; empty for an empty one."""
     return msgpack.packb(state, default=_pack_array) if state else b""
 
 
@@ -85,7 +85,7 @@ def _pack_array(value: Any) -> Any:
         return msgpack.ExtType(0, msgpack.packb([value.dtype.str, value.shape, value.tobytes()]))
     if isinstance(value, np.generic):
         return value.item()
-    raise TypeError(f"a snapshot holds numbers, strings, lists and arrays, not {type(value).__name__}")
+    raise TypeError(f"a snapshot holds numbers, strings, bytes, lists and arrays, not {type(value).__name__}")
 
 
 def _unpack_array(code: int, payload: bytes) -> np.ndarray:

@@ -132,7 +132,7 @@ class Component:
         return True
 
     def snapshot(self) -> dict[str, Any]:
-        """State that a restart or a replay must have: numbers, strings, lists and numpy arrays by name."""
+        """State that a restart or a replay must have: numbers, strings, bytes, lists and arrays by name."""
         return {}
 
     def restore(self, state: dict[str, Any]) -> None:

@@ -17,11 +17,16 @@ Frames = Annotated[int, Within(1, 100)]
 Tolerance = Annotated[float, Within(0.001, 0.5)]  # 0 would be met by no measured ground
 
 
+_CELLS_MAX = 250_000
+"""Of a map: every message on map/elevation holds 20 bytes of each, and every image is matched with all of them."""
+
+
 @dataclass(frozen=True)
 class Vfa:
     """Visual foothold adaptation (Sec. II-A): what a cell must be to be safe."""
 
-    unmapped_share: Share = 0.5  # of a heightmap's cells unknown: above it there is no map, the plane is allowed
+    # Of a heightmap's cells unknown or older than age_max_s: above it there is no map, the plane is allowed.
+    unmapped_share: Share = 0.5
     std_max_m: Tolerance = 0.02  # of a cell's height
     # Hind feet come to what the camera saw ahead of the front feet a metre of walking, or seven minutes, before.
     age_max_s: Annotated[float, Within(1.0, 1e5)] = 600.0
@@ -60,6 +65,12 @@ class ElevationMap:
     vfa: Vfa = Vfa()
 
     def __post_init__(self) -> None:
+        cells = round(self.length_m / self.cell_m) * round(self.width_m / self.cell_m)
+        if cells > _CELLS_MAX:
+            raise ConfigError(
+                f"length_m = {self.length_m} by width_m = {self.width_m} of cell_m = {self.cell_m} are {cells} "
+                f"cells, at most {_CELLS_MAX}; make the map smaller or its cells larger"
+            )
         rise = self.cell_m * tan(self.vfa.slope_max)
         if rise > self.vfa.edge_max_m:
             raise ConfigError(

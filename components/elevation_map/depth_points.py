@@ -14,6 +14,10 @@ _SLOPE = 0.3
 """Slope of the ground up to which a shift along it is counted in a height's variance."""
 
 
+_ARM_MAX_M = 2.0
+"""No camera on the trunk is farther from its origin."""
+
+
 @dataclass(frozen=True)
 class View:
     """One image and the pose it was taken from.
@@ -66,6 +70,9 @@ def refusal(frame: DepthFrame) -> str:
         return "it has no pixels"
     if not (np.isfinite(frame.p_BC).all() and np.isfinite(frame.quat_BC).all()):
         return "the camera's pose is not finite"
+    arm = float(np.hypot(np.hypot(*frame.p_BC[:2]), frame.p_BC[2]))  # without squares, which may overflow
+    if arm > _ARM_MAX_M:
+        return f"the camera is {arm:.3g} m from the trunk's origin, limit {_ARM_MAX_M:g} m"
     length = float(np.sqrt(frame.quat_BC @ frame.quat_BC))
     if abs(length - 1.0) > 1e-3:
         return f"the camera's quaternion has length {length:.3f}, not 1"

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from surefoot.bus.codec import decode, encode
 from surefoot.bus.messages import FootholdRegions, FootholdRequest, StateEstimate
 from surefoot.bus.topics import TOPICS
 from surefoot.components.component import Component, Inbox, Outbox
@@ -42,6 +43,8 @@ class ElevationMap(Component):
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
         self._vision = deployment.run.vision
+        # In simulated time a restarted estimator takes up where its predecessor was: its frame is the same.
+        self._new_boot_new_frame = deployment.run.clock == "monotonic"
         if self._vision:
             self.complete = ("state/estimate",)  # an image needs the very one of its time
         self._settings = deployment.elevation_map
@@ -59,7 +62,7 @@ class ElevationMap(Component):
         if self._last is not None and self._last.valid:
             self.map.follow(self._last.p_WB)
         for event in inbox.new("fsm/event"):
-            self.map.note(event, self._last)
+            self.map.note(event)
         if self._vision:
             self._look(t, inbox)
             if self.map.seen_t is not None and t >= self._publish_t:
@@ -70,10 +73,19 @@ class ElevationMap(Component):
             outbox.publish("foothold/regions", self._answer(request, t))
 
     def snapshot(self) -> dict[str, Any]:
-        return self.map.snapshot(heights=self._vision)
+        state = self.map.snapshot(heights=self._vision)
+        state["last"] = encode(self._last) if self._last is not None else b""
+        if self._vision:
+            state |= {"waiting": self._match.snapshot(), "refused": self._refused, "publish_t": self._publish_t}
+        return state
 
     def restore(self, state: dict[str, Any]) -> None:
         self.map.restore(state)
+        if state["last"]:
+            self._last = decode(StateEstimate, state["last"])
+        if self._vision:
+            self._match.restore(state["waiting"])
+            self._refused, self._publish_t = state["refused"], state["publish_t"]
 
     def _heed(self, estimate: StateEstimate) -> None:
         """An estimate that starts again leaves the map behind in a frame that is gone."""
@@ -86,7 +98,8 @@ class ElevationMap(Component):
 
     def _jumped(self, last: StateEstimate, estimate: StateEstimate) -> bool:
         reach = self._settings.jump_m + _BASE_SPEED * abs(estimate.t - last.t)
-        return bool(estimate.boot != last.boot or np.linalg.norm(estimate.p_WB - last.p_WB) > reach)
+        anew = self._new_boot_new_frame and estimate.boot != last.boot
+        return bool(anew or np.linalg.norm(estimate.p_WB - last.p_WB) > reach)
 
     def _look(self, t: float, inbox: Inbox) -> None:
         for frame in inbox.new("hw/depth"):

@@ -93,9 +93,9 @@ class FootholdAdaptation:
     def _foothold(
         self, ground: FootholdHeightmap, unsafe: np.ndarray, planes: np.ndarray, target: np.ndarray
     ) -> _Foothold:
-        unknown = int(np.isnan(ground.height_m).sum())
-        if unknown > self._settings.vfa.unmapped_share * unsafe.size:
-            return _Foothold(target.copy(), f"no map there: {unknown} of {unsafe.size} cells unknown")
+        unmapped = self._unmapped(ground)
+        if unmapped:
+            return _Foothold(target.copy(), unmapped)
         safe = unsafe == 0
         if not safe.any():
             return _Foothold(target.copy(), f"no safe cell of {unsafe.size}: {_counts(unsafe)}", safe=False)
@@ -113,6 +113,21 @@ class FootholdAdaptation:
             region=SafeRectangle.around(safe, cell).half_spaces(ground.p_W, ground.patch.cell_m),
             held_n=self._held(ground, xy),
         )
+
+    def _unmapped(self, ground: FootholdHeightmap) -> str:
+        """Why there is no map around a target, in words; empty when there is one.
+
+        What was seen too long ago is no map either. To call all of it unsafe would hold a robot that has rested
+        for so long where it is: the camera does not see the ground under and behind it.
+        """
+        settings = self._settings.vfa
+        missing = np.isnan(ground.height_m)
+        stale = ~missing & (ground.around(ground.patch.age_s) > settings.age_max_s)
+        unknown, old = int(missing.sum()), int(stale.sum())
+        if unknown + old <= settings.unmapped_share * ground.height_m.size:
+            return ""
+        since = f", {old} seen more than {settings.age_max_s:g} s ago" if old else ""
+        return f"no map there: {unknown} of {ground.height_m.size} cells unknown{since}"
 
     def _foot_centres(self, ground: FootholdHeightmap, planes: np.ndarray, target: np.ndarray) -> np.ndarray:
         """(15, 15, 3) foot centres over the cells [m]; at the target's height where the ground is not known."""

@@ -6,7 +6,7 @@ from math import ceil
 
 import numpy as np
 
-from surefoot.bus.messages import FsmEvent, StateEstimate
+from surefoot.bus.messages import FsmEvent
 from surefoot.components.elevation_map.torus import Torus
 
 _LEAST_N = 1.0
@@ -17,7 +17,8 @@ class LoadLayer:
     """Layers `held_n` and `collapsed_n` of a torus; 0 where nothing is known.
 
     A hold under a small load does not undo a collapse under a greater one: both are kept, the largest load that
-    has held and the least under which the ground gave way.
+    has held and the least of those under which, or under less, the ground gave way. A hold under as much as made
+    it give way later is a thing of the past.
     """
 
     def __init__(self, torus: Torus, foot_radius_m: float):
@@ -29,30 +30,27 @@ class LoadLayer:
         self._around = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
         self._radius = foot_radius_m
 
-    def note(self, event: FsmEvent, estimate: StateEstimate | None) -> None:
-        """Take in a verdict of the state machine; other events say nothing of the ground.
-
-        Args:
-            event: any event.
-            estimate: the newest one, for the force on a foot whose ground gave way after it was accepted.
-        """
+    def note(self, event: FsmEvent) -> None:
+        """Take in a verdict of the state machine; other events say nothing of the ground."""
         if event.kind in ("force_held", "accepted"):
             self._mark_held(event.p_WF, event.held_n)
-        elif event.kind in ("collapse", "late_collapse"):
-            load = event.asked_n or event.held_n
-            if not load and estimate is not None and event.leg >= 0:
-                load = float(estimate.force_W[event.leg] @ estimate.normal_W)
-            self._mark_collapsed(event.p_WF, max(load, _LEAST_N))
+        elif event.kind == "collapse":
+            self._mark_collapsed(event.p_WF, event.asked_n, bears_n=event.asked_n)
+        elif event.kind == "late_collapse":
+            # It gave way under the most that it has borne or under less: nothing that it held is certain any more.
+            self._mark_collapsed(event.p_WF, event.held_n, bears_n=0.0)
 
     def _mark_held(self, p_WF: np.ndarray, load_n: float) -> None:
         at = self._disc(p_WF)
         held = self._held.reshape(-1)
         held[at] = np.maximum(held[at], load_n)
 
-    def _mark_collapsed(self, p_WF: np.ndarray, load_n: float) -> None:
-        at = self._disc(p_WF)
-        collapsed = self._collapsed.reshape(-1)
+    def _mark_collapsed(self, p_WF: np.ndarray, load_n: float, bears_n: float) -> None:
+        """It gave way under `load_n`; holds of `bears_n` and more are taken back."""
+        at, load_n = self._disc(p_WF), max(load_n, _LEAST_N)
+        collapsed, held = self._collapsed.reshape(-1), self._held.reshape(-1)
         collapsed[at] = np.where(collapsed[at] > 0.0, np.minimum(collapsed[at], load_n), load_n)
+        held[at] = np.where(held[at] < bears_n, held[at], 0.0)
 
     def _disc(self, p_WF: np.ndarray) -> np.ndarray:
         """Flat places of the cells whose centre is under the foot, its own cell in any case."""

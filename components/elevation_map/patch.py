@@ -17,8 +17,8 @@ class Patch:
         height_m: (n, m) height of the ground [m]; NaN unknown.
         std_m: (n, m) its standard deviation [m]; NaN unknown.
         age_s: (n, m) time since the cell was seen [s]; NaN never.
-        held_n: (n, m) largest load that has held there [N]; 0 untested.
-        collapsed_n: (n, m) least load under which it gave way [N]; 0 it has not.
+        held_n: (n, m) largest load that has held there and has not given way since [N]; 0 untested.
+        collapsed_n: (n, m) load under which, or less, it gave way [N]; 0 it has not.
     """
 
     cell_m: float

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections import deque
 
+from surefoot.bus.codec import decode, encode
 from surefoot.bus.messages import DepthFrame, StateEstimate
 
 _KEPT = 128
+"""Estimates: those of a quarter of a second."""
+
 _PATIENCE_S = 0.2
+"""An image whose estimate has not come by then is dropped [s]."""
 
 
 class PoseMatch:
@@ -29,6 +33,14 @@ class PoseMatch:
     def add_frame(self, frame: DepthFrame) -> None:
         """An image that can be used."""
         self._waiting.append(frame)
+
+    def snapshot(self) -> list[bytes]:
+        """The images that wait; those to come find the estimates of their times among those to come."""
+        return [encode(frame) for frame in self._waiting]
+
+    def restore(self, waiting: list[bytes]) -> None:
+        """Take over what `snapshot` gave."""
+        self._waiting = [decode(DepthFrame, payload) for payload in waiting]
 
     def matched(self, t: float) -> tuple[list[tuple[DepthFrame, StateEstimate]], str]:
         """Images with the estimate of their time, oldest first, and why the last other one was dropped, if any."""

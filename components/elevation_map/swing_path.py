@@ -9,6 +9,7 @@ from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.config.fsm import Fsm
 
 _SAMPLES = 15
+"""Points on a swing: those of a step of 30 cm are no farther apart than a cell of 2 cm."""
 
 
 class SwingPath:

@@ -32,22 +32,24 @@ class TerrainMap:
         self._torus = Torus(settings.cell_m, settings.length_m, settings.width_m)
         self._heights = Heights(settings, self._torus)
         self._loads = LoadLayer(self._torus, foot_radius_m)
-        self._last: StateEstimate | None = None
+        self._base = np.zeros(
+            0
+        )  # x, y, z of the base and the variance of its height at the last image; empty: none
         self.drift_m = 0.0
         self.seen_t: float | None = None
 
     def clear(self) -> None:
         """Forget everything: the frame in which it was known is gone."""
         self._torus.clear()
-        self._last, self.drift_m, self.seen_t = None, 0.0, None
+        self._base, self.drift_m, self.seen_t = np.zeros(0), 0.0, None
 
     def follow(self, p_WB: np.ndarray) -> None:
         """Keep the robot in the middle."""
         self._torus.move_to(p_WB[:2])
 
-    def note(self, event: FsmEvent, estimate: StateEstimate | None) -> None:
+    def note(self, event: FsmEvent) -> None:
         """Take in what the state machine has found out about the ground."""
-        self._loads.note(event, estimate)
+        self._loads.note(event)
 
     def see(self, frame: DepthFrame, estimate: StateEstimate, reference: MotionReference | None) -> None:
         """Take in an image; `estimate` is of the same time."""
@@ -91,6 +93,7 @@ class TerrainMap:
         if heights:
             state |= {name: layers[name] for name in _SEEN}
             state["t"] = np.array([] if self.seen_t is None else [self.seen_t])
+            state["base"] = self._base
         return state
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -105,13 +108,15 @@ class TerrainMap:
                 layers[name][:] = state[name]
         for t in state.get("t", ()):
             self.seen_t = float(t)
+        self._base = np.array(state.get("base", ()))
 
     def _grow(self, estimate: StateEstimate, told: bool) -> None:
         """Old heights are less certain by how far the base has drifted since the last image, if no foot tells."""
-        last, self._last = self._last, estimate
-        if last is not None:
-            way = float(np.linalg.norm(estimate.p_WB - last.p_WB))
-            drifted = 0.0 if told else max(float(estimate.covariance[2, 2] - last.covariance[2, 2]), 0.0)
+        last, self._base = self._base, np.append(estimate.p_WB, estimate.covariance[2, 2])
+        if len(last):
+            moved = self._base - last
+            way = float(np.linalg.norm(moved[:3]))
+            drifted = 0.0 if told else max(float(moved[3]), 0.0)
             self._heights.grow(self._settings.motion_m**2 * way + drifted)
 
     def _cut(self, first: np.ndarray, shape: tuple[int, int], t: float) -> Patch:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+_FARTHEST = 2.0**60
+"""Cells from the world's origin; a place beyond counts as there: a larger number is no integer of 64 bits."""
+
 
 class Torus:
     """A window of n by m cells on the world's grid; the cell (i, j) of the world is stored at (i mod n, j mod m).
@@ -49,7 +52,7 @@ class Torus:
 
     def cells(self, p_W: np.ndarray) -> np.ndarray:
         """(..., 2) cells of the world that places (..., 2) [m] lie in."""
-        return np.floor(np.asarray(p_W) / self.cell_m).astype(np.int64)
+        return np.clip(np.floor(np.asarray(p_W) / self.cell_m), -_FARTHEST, _FARTHEST).astype(np.int64)
 
     def places(self, cells: np.ndarray) -> np.ndarray:
         """(..., 2) centres of cells (..., 2) of the world [m]."""

@@ -150,6 +150,7 @@ class ProbingCycle:
     def step(self, now: Observation) -> None:
         """Advance by one tick."""
         self._watch.update(now.estimate.p_WF, self.motion.trusted)
+        self._watch.load(now.estimate.force_W @ now.estimate.normal_W, self.motion.bearing)
         if self._settings.probing:
             self._watch_stance(now)
             self._watch_balance(now)
@@ -247,8 +248,12 @@ class ProbingCycle:
         leg = self._leg
         if not answer.safe[leg]:
             return answer.reasons[leg] if answer.reasons else "the map knows no safe cell near it"
+        return self._tried(answer.foothold_WF[leg])
+
+    def _tried(self, foothold_W: np.ndarray) -> str:
+        """Which foothold that was tried in vain a place (3,) is, or ""."""
         for failed_W in self._failed_W:
-            apart = float(np.hypot(*(answer.foothold_WF[leg] - failed_W)[:2]))
+            apart = float(np.hypot(*(foothold_W - failed_W)[:2]))
             if apart < 0.5 * self._foot_radius_m:
                 return f"{1e3 * apart:.0f} mm from a foothold tried in vain: not tried twice"
         return ""
@@ -263,6 +268,11 @@ class ProbingCycle:
             self._next_candidate(now)
             return
         self._foothold_W = plan.footholds_WF[self._leg].copy()
+        tried = self._tried(self._foothold_W)  # it may be anywhere in its region, as that of the last candidate
+        if tried:
+            self._event("rejected", tried, now, self._foothold_W)
+            self._next_candidate(now)
+            return
         fixed = self._settings.fixed_force_n
         self._press.envelope_W = np.tile(fixed * self.reference.normal_W, (6, 1)) if fixed else plan.envelope_W
         self._begin_move(now)
@@ -533,7 +543,7 @@ class ProbingCycle:
         leg, settings = self._leg, self._settings
         self._freed = freed
         if not freed:
-            self._failed_W.append(self._answer.foothold_WF[leg])
+            self._failed_W.append(self._foothold_W.copy())
         to = self._planner.below_hip(leg, now.pose, settings.leg_up_below_hip_m)
         # Half the way to the place below the hip, or straight up out of a hole, whose edge would catch the foot.
         to[:2] += (1.0 if freed else 0.5) * (now.estimate.p_WF[leg, :2] - to[:2])
@@ -628,9 +638,9 @@ class ProbingCycle:
             self._gave_way(int(leg), float(moved[leg]), now)
 
     def _gave_way(self, leg: int, moved: float, now: Observation) -> None:
-        foot = now.estimate.p_WF[leg]
+        foot, borne_n = now.estimate.p_WF[leg], float(self._watch.borne_n[leg])
         why = f"{LEGS[leg]} moved {1e2 * moved:.1f} cm after it was accepted"
-        self._report("late_collapse", why, leg=leg, p_WF=foot.copy(), displacement_m=moved)
+        self._report("late_collapse", why, leg=leg, p_WF=foot.copy(), displacement_m=moved, held_n=borne_n)
         self._watch.sunk[leg] |= self.motion.trusted[leg]
         self.motion.distrust(leg, now)
         self._course.put_first(leg)

@@ -27,7 +27,12 @@ class Questions:
         )
 
     def ask_plan(self, t: float, answer: FootholdRegions, normal_W: np.ndarray, **figures) -> None:
-        """OPT: a stride to the footholds of an answer; `figures` are the other fields of a `PlanRequest`."""
+        """OPT: a stride to the footholds of an answer; `figures` are the other fields of a `PlanRequest`.
+
+        Of a leg that is not moved now the answer may know no safe foothold: its target stands in, without a
+        region. It shapes the forces that the stride asks of the moved foot, and nobody steps there: before that
+        leg is moved the map is asked again.
+        """
         self.plan_request = PlanRequest(
             t=t,
             valid=True,

@@ -1,4 +1,4 @@
-"""How far each foot has moved on the ground since it was trusted, and where it could go back to."""
+"""How far each foot has moved on the ground since it was trusted, what it bore, and where it could go back to."""
 
 from __future__ import annotations
 
@@ -15,17 +15,19 @@ class StanceWatch:
     Attributes:
         drift_W: (3,) what the estimate has drifted since the anchors were first set [m].
         sunk: (4,) feet whose safe foothold has given way.
+        borne_n: (4,) largest normal force on each foot since it was trusted or, later, set down again [N].
     """
 
     def __init__(self) -> None:
         self.drift_W = np.zeros(3)
         self.sunk = np.zeros(4, bool)
+        self.borne_n = np.zeros(4)
         self._anchor_W = np.zeros((4, 3))
         self._safe_W = np.zeros((4, 3))
 
     def begin(self, p_WF: np.ndarray) -> None:
         """Trust all feet (4, 3) where they are."""
-        self.drift_W[:], self.sunk[:] = 0.0, False
+        self.drift_W[:], self.sunk[:], self.borne_n[:] = 0.0, False, 0.0
         self._anchor_W[:] = self._safe_W[:] = p_WF
 
     def update(self, p_WF: np.ndarray, trusted: np.ndarray) -> None:
@@ -33,14 +35,19 @@ class StanceWatch:
         if trusted.sum() >= 3:
             self.drift_W = np.median((p_WF - self._anchor_W)[trusted], axis=0)
 
+    def load(self, force_n: np.ndarray, bearing: np.ndarray) -> None:
+        """Take in normal forces (4,) [N] and which feet stand (4,): in the air a leg's inertia looks like one."""
+        self.borne_n = np.where(bearing, np.maximum(self.borne_n, force_n), self.borne_n)
+
     def touched(self, leg: int, p_F: np.ndarray) -> None:
-        """A foot has found ground at a point (3,): from there its displacement counts."""
+        """A foot has found ground at a point (3,): from there its displacement counts, from now on its load."""
         self._anchor_W[leg] = p_F - self.drift_W
+        self.borne_n[leg] = 0.0
 
     def trust(self, leg: int, p_F: np.ndarray) -> None:
         """A foothold (3,) has borne its load: it replaces the leg's last safe one."""
         self._anchor_W[leg] = self._safe_W[leg] = p_F - self.drift_W
-        self.sunk[leg] = False
+        self.sunk[leg], self.borne_n[leg] = False, 0.0
 
     def safe(self, leg: int) -> np.ndarray:
         """(3,) the leg's last safe foothold, in the world as it is estimated now [m]."""

@@ -158,6 +158,7 @@ OUTSIDE = {
     "terrain.planks.board_mass=0": "0.1 to 100",
     "terrain.planks.frame_height_m=0": "0.02 to 5",
     "hw.depth.slit_m=-1": "0 to 0.1",
+    "hw.depth.rate_hz=1": "4 to 60",
     "elevation_map.std_min_m=0": "0.0001 to 0.2",
     "elevation_map.gate=0": "1 to 10000",
     "elevation_map.takeover_frames=0": "1 to 100",
@@ -243,6 +244,7 @@ TOGETHER = {
     "fsm.leg_up_below_hip_m=0.45": r"^fsm\.leg_up_below_hip_m = 0\.45: aliengo's hips",
     "terrain.kind=planks terrain.planks.run_up_m=0.5": r"^terrain\.planks\.run_up_m = 0\.5: .* 0\.58 m",
     "elevation_map.cell_m=0.06": r"^elevation_map: vfa\.edge_max_m = 0\.03: .* rises 0\.035 m .*cell_m = 0\.06",
+    "elevation_map.cell_m=0.005 elevation_map.length_m=20": r"^elevation_map: .* 1280000 cells, at most 250000",
     "terrain.kind=slope terrain.slope.run_up_m=0.5": r"^terrain\.slope\.run_up_m = 0\.5: .* 0\.58 m",
     "robot=spot": r"^robot 'spot' is not described; known: aliengo",
 }

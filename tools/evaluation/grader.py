@@ -225,7 +225,7 @@ class Grader:
         elif event.kind == "force_held":
             self._end_force(event.force_index)
             if self._probe is not None and event.force_index == ENVELOPE_FORCES - 1:
-                self._probe.borne, self._borne_n = True, self._probe.force_n
+                self._probe.borne, self._borne_n = True, max(self._borne_n, self._probe.force_n)
         elif event.kind == "collapse":
             counts["collapses_detected"] += 1
             self.displacement.append(float(np.linalg.norm(truth.p_WF[leg] - self._touched_W[leg])))

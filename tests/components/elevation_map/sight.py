@@ -16,8 +16,10 @@ from surefoot.hw.mujoco.scene import build_scene
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def deployment(vision=True, depth=None, kind="flat"):
-    return Deployment(run=Run(vision=vision), hw=Hw(depth=depth or Settings()), terrain=Terrain(kind=kind))
+def deployment(vision=True, depth=None, kind="flat", clock="simulated"):
+    return Deployment(
+        run=Run(vision=vision, clock=clock), hw=Hw(depth=depth or Settings()), terrain=Terrain(kind=kind)
+    )
 
 
 def box(name, centre, half, pitch=0.0):

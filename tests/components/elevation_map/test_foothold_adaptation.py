@@ -4,11 +4,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from made_up_ground import CELL, RADIUS, ROBOT, Ground, standing_at
+from made_up_ground import CELL, NOMINAL_BF, RADIUS, ROBOT, Ground, flagged, standing_at
 
 from surefoot.bus.codec import decode, encode
-from surefoot.bus.messages import FootholdRegions
+from surefoot.bus.messages import FootholdRegions, Unsafe
 from surefoot.components.elevation_map.foothold_adaptation import FootholdAdaptation
+from surefoot.components.robot_model.rotation import matrix_of_rpy
 from surefoot.config.elevation_map import ElevationMap, Vfa
 from surefoot.config.fsm import Fsm
 
@@ -156,6 +157,28 @@ def test_a_foothold_beside_a_step_moves_off_it_and_says_why():
     assert boxes(answer, 0)[1][0] == pytest.approx(0.17)
 
 
+@pytest.mark.parametrize("yaw", [0.25 * np.pi, 0.5 * np.pi, np.pi, -2.0])
+@pytest.mark.parametrize("way", [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0)], ids=("forward", "backward", "left"))
+def test_a_robot_that_is_turned_finds_the_same_ground_safe(yaw, way):
+    """The map's axes are the world's: a leg's reach and its way over the ground are not."""
+    R_WB = matrix_of_rpy(np.array([0.0, 0.0, yaw]))
+    height = RADIUS - NOMINAL_BF[0, 2]
+    feet = NOMINAL_BF @ R_WB.T + [0.0, 0.0, height]
+    step = R_WB @ np.append(0.1 * np.array(way), 0.0)
+    asked = {"targets": feet + step, "feet": feet, "base": np.append(step + [0.0, 0.0, height], [0.0, 0.0, yaw])}
+    level = Ground().ask(**asked)
+    assert not level.heightmap_unsafe.any()
+    np.testing.assert_allclose(level.foothold_WF, asked["targets"], atol=1e-12)
+    # A wall half way of every step, as high as a calf, is met by every leg, whatever the direction.
+    unit = step / 0.1
+    for leg in range(4):
+        middle = (feet[leg] + 0.5 * step)[:2]
+        wall = Ground(
+            lambda x, y, p=middle: np.where(np.abs((x - p[0]) * unit[0] + (y - p[1]) * unit[1]) < 0.02, 0.2, 0.0)
+        )
+        assert flagged(wall.ask(**asked), Unsafe.LEG, leg)[7, 7]
+
+
 def test_without_a_safe_cell_it_says_what_is_wrong():
     ground = Ground()
     ground.std[:] = 0.1
@@ -176,6 +199,19 @@ def test_without_a_map_the_whole_plane_is_allowed():
     answer = Ground().ask(**far)
     np.testing.assert_array_equal(answer.foothold_WF, far["targets"])
     assert answer.reasons[0] == "no map there: 225 of 225 cells unknown"
+
+
+@pytest.mark.parametrize(("columns", "active"), [(7, True), (8, False)])
+def test_what_was_seen_too_long_ago_is_no_map(columns, active):
+    """A robot that has rested for long must be able to go on: its hind feet's ground is not seen again."""
+    ground = Ground()
+    ground.age[ground.x > 0.2 + CELL * (7.5 - columns)] = 1e4
+    ground.height[ground.cell(0.06, 0.06)] = np.nan  # the heightmap's first cell
+    answer = ground.ask(**AT)
+    assert answer.safe[0] and answer.region_active[0] == active
+    if not active:
+        np.testing.assert_array_equal(answer.foothold_WF[0], AT["targets"][0])
+        assert answer.reasons[0] == "no map there: 1 of 225 cells unknown, 120 seen more than 600 s ago"
 
 
 @pytest.mark.parametrize(("columns", "active"), [(7, True), (8, False)])

@@ -4,19 +4,36 @@ import numpy as np
 import pytest
 
 from surefoot.bus.codec import encode
+from surefoot.components.clock_messages import pack_snapshot, unpack_snapshot
+from surefoot.components.elevation_map.elevation_map import ElevationMap
 from surefoot.components.lockstep import Lockstep
 from surefoot.config.deployment import Deployment, Run
 from surefoot.config.terrain import Planks, Terrain
 
 
-def run(until_s, command="", kind="flat"):
-    stack = Lockstep(Deployment(run=Run(vision=True), terrain=Terrain(kind=kind)))
+def run(until_s, command="", kind="flat", part=ElevationMap):
+    deployment = Deployment(run=Run(vision=True), terrain=Terrain(kind=kind))
+    stack = Lockstep(deployment, given=[part(deployment)])
     heard = {}
     stack.listen(lambda key, message: heard.setdefault(key, []).append(message))
     if command:
         stack.command(command)
     stack.run(until_s)
     return stack, heard
+
+
+class Restarted(ElevationMap):
+    """A map's process that ends after every step; another takes its place with what the clock's master kept."""
+
+    def __init__(self, deployment):
+        super().__init__(deployment)
+        self._part = ElevationMap(deployment)
+
+    def step(self, t, inbox, outbox):
+        self._part.step(t, inbox, outbox)
+        payload = pack_snapshot(self._part.snapshot())
+        self._part = ElevationMap(self.deployment)
+        self._part.restore(unpack_snapshot(payload))
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +69,9 @@ def test_what_probing_finds_is_on_the_map(walked):
 
 
 def test_equal_runs_see_the_same():
-    one, other = (run(0.6)[1] for _ in range(2))
+    one, other, restarted = (run(0.6, part=part)[1] for part in (ElevationMap, ElevationMap, Restarted))
     for key in ("hw/depth", "map/elevation", "state/estimate"):
-        assert [encode(message) for message in one[key]] == [encode(message) for message in other[key]]
+        first = [encode(message) for message in one[key]]
+        assert first == [encode(message) for message in other[key]]
+        assert first == [encode(message) for message in restarted[key]]
     assert len(one["hw/depth"]) == 10 and one["map/elevation"]

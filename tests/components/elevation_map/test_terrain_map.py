@@ -315,15 +315,21 @@ def event(kind, p_WF, **figures):
     return FsmEvent(t=1.0, valid=True, kind=kind, p_WF=np.array(p_WF), leg=1, **figures)
 
 
+def at(seeing, p_WF):
+    """Loads held and collapsed under in the cell of a place [N]."""
+    patch = seeing.patch(np.array(p_WF[:2]), 0, 0, 2.0)
+    return patch.held_n[0, 0], patch.collapsed_n[0, 0]
+
+
 def test_loads_through_a_probing_that_ends_in_a_collapse():
     seeing, place = fresh_map(), (0.35, -0.15, RADIUS)
     seeing.follow(np.zeros(3))
-    seeing.note(event("force_held", place, asked_n=40.0, held_n=38.0), None)
-    seeing.note(event("force_held", place, asked_n=60.0, held_n=57.0), None)
-    seeing.note(event("collapse", place, asked_n=90.0), None)
-    seeing.note(event("collapse", place, asked_n=110.0), None)
-    seeing.note(event("force_held", place, asked_n=50.0, held_n=48.0), None)  # a later hold erases nothing
-    seeing.note(event("transition", place, held_n=500.0), None)
+    seeing.note(event("force_held", place, asked_n=40.0, held_n=38.0))
+    seeing.note(event("force_held", place, asked_n=60.0, held_n=57.0))
+    seeing.note(event("collapse", place, asked_n=90.0))
+    seeing.note(event("collapse", place, asked_n=110.0))
+    seeing.note(event("force_held", place, asked_n=50.0, held_n=48.0))  # a later hold erases nothing
+    seeing.note(event("transition", place, held_n=500.0))
     patch = seeing.patch(np.array(place[:2]), 4, 4, 2.0)
     assert np.isnan(patch.height_m).all()  # loads are known blind, heights are not
     x, y = patch.p_W[0] + 0.02 * np.arange(9), patch.p_W[1] + 0.02 * np.arange(9)
@@ -333,24 +339,32 @@ def test_loads_through_a_probing_that_ends_in_a_collapse():
     np.testing.assert_array_equal(patch.collapsed_n, np.where(under, 90.0, 0.0))
 
 
-def test_an_accepted_foothold_has_held_and_a_late_collapse_takes_the_load_of_that_moment():
+def test_an_accepted_foothold_has_held_until_it_gives_way_after_all():
     seeing, place = fresh_map(), (0.31, 0.13, RADIUS)
     seeing.follow(np.zeros(3))
-    seeing.note(event("accepted", place, held_n=80.0), None)
-    force = np.zeros((4, 3))
-    force[1] = [3.0, 0.0, 66.0]
-    seeing.note(event("late_collapse", place), estimate(1.0, (0, 0, HEIGHT), force_W=force))
-    patch = seeing.patch(np.array(place[:2]), 0, 0, 2.0)
-    assert patch.held_n[0, 0] == 80.0 and patch.collapsed_n[0, 0] == 66.0
-    seeing.note(event("late_collapse", place), None)  # a load that nobody knows counts as next to none
-    assert seeing.patch(np.array(place[:2]), 0, 0, 2.0).collapsed_n[0, 0] == 1.0
+    seeing.note(event("accepted", place, held_n=80.0))
+    assert at(seeing, place) == (80.0, 0.0)
+    seeing.note(event("late_collapse", place, held_n=95.0))
+    assert at(seeing, place) == (0.0, 95.0)  # under which load up to 95 N it gave way nobody knows
+    seeing.note(event("force_held", place, held_n=30.0))
+    assert at(seeing, place) == (30.0, 95.0)
+    seeing.note(event("late_collapse", place))  # a load that nobody knows counts as next to none
+    assert at(seeing, place) == (0.0, 1.0)
+
+
+def test_ground_that_gives_way_under_what_it_has_held_bears_that_no_longer():
+    seeing, place = fresh_map(), (0.31, 0.13, RADIUS)
+    seeing.follow(np.zeros(3))
+    seeing.note(event("accepted", place, held_n=118.0))
+    seeing.note(event("collapse", place, asked_n=90.0))
+    assert at(seeing, place) == (0.0, 90.0)
 
 
 def test_loads_go_with_the_window_and_are_off_it_forgotten():
     seeing, place = fresh_map(), (0.35, -0.15, RADIUS)
     seeing.follow(np.zeros(3))
-    seeing.note(event("collapse", place, asked_n=90.0), None)
-    seeing.note(event("collapse", (9.0, 9.0, RADIUS), asked_n=90.0), None)  # far off the map: nothing happens
+    seeing.note(event("collapse", place, asked_n=90.0))
+    seeing.note(event("collapse", (9.0, 9.0, RADIUS), asked_n=90.0))  # far off the map: nothing happens
     seeing.follow(np.array([1.4, 0.3, 0.0]))
     assert seeing.patch(np.array(place[:2]), 0, 0, 2.0).collapsed_n[0, 0] == 90.0
     seeing.follow(np.array([1.7, 0.3, 0.0]))
@@ -387,7 +401,7 @@ def test_where_feet_stand_on_what_was_seen_the_drift_is_known():
 def test_a_snapshot_brings_back_what_it_holds(heights):
     seeing = fresh_map()
     t = walk(Sight(depth=NOISY), seeing, strolling(20))
-    seeing.note(event("collapse", (0.35, -0.15, RADIUS), asked_n=90.0), None)
+    seeing.note(event("collapse", (0.35, -0.15, RADIUS), asked_n=90.0))
     again = fresh_map()
     again.restore(seeing.snapshot(heights))
     mine, other = seeing.message(t), again.message(t)

@@ -27,9 +27,11 @@ class Puppet:
     Attributes:
         ground_z: (4,) height at which each leg's foot meets ground when it comes down [m].
         sunk: (4,) how far the ground under each foot has given way [m].
+        load_n: (4,) what each foot bears where it stands and does not press [N].
         tilt: roll that the estimate claims [rad].
         weak: share of the asked force that the ground really takes.
         map: what a request's answer says otherwise than "blind": fields of `FootholdRegions`.
+        placed: where a plan's footholds (4, 3) are, from its request.
         unanswered: of "regions" and "plan", the questions that nobody answers.
     """
 
@@ -39,10 +41,11 @@ class Puppet:
         self.feet = planner.nominal_BF.copy()
         self.feet[:, 2] = FOOT_Z
         self.pose = planner.pose(np.zeros(2), self.feet, UP, 0.0)
-        self.ground_z, self.sunk = np.full(4, FOOT_Z), np.zeros(4)
+        self.ground_z, self.sunk, self.load_n = np.full(4, FOOT_Z), np.zeros(4), np.full(4, 60.0)
         self.tilt, self.weak, self.t = 0.0, 1.0, 0.0
         self.events, self.unanswered = [], ()
         self.map = lambda request: {}
+        self.placed = lambda request: request.target_WF
         self.cycle = ProbingCycle(ROBOT, self.settings, self._report)
         self.cycle.stand_up(self.observe())
         if forward:
@@ -61,7 +64,7 @@ class Puppet:
     def observe(self):
         reference = self.cycle.reference if hasattr(self, "cycle") else None
         feet = self.feet - np.outer(self.sunk, UP)
-        contact, force = np.ones(4, bool), np.tile(60.0 * UP, (4, 1))
+        contact, force = np.ones(4, bool), np.outer(self.load_n, UP)
         if reference is not None:
             for leg in np.flatnonzero(np.isin(reference.leg_status, IN_AIR)):
                 contact[leg] = feet[leg, 2] <= self.ground_z[leg] - self.sunk[leg] + 1e-6
@@ -104,7 +107,7 @@ class Puppet:
                 valid=True,
                 id=request.id,
                 status="ok",
-                footholds_WF=request.target_WF,
+                footholds_WF=self.placed(request),
                 envelope_W=envelope,
             )
             self.cycle.plan(plan, now)

@@ -109,3 +109,21 @@ def test_a_cell_that_gave_way_is_not_probed_again_for_the_next_candidate():
     # What failed for one leg is not held against the next one, nor against the same leg's next turn.
     assert puppet.run(20.0, lambda: len(puppet.kinds("accepted")) == 5)
     assert len(puppet.kinds("rejected")) == 1
+
+
+def test_a_place_that_the_optimisation_chooses_again_is_not_tried_twice():
+    """It may place a foot anywhere in its region: two candidates can end in one place."""
+    puppet = Puppet()
+    puppet.map = lambda request: patch(request.target_WF, half_m=0.08)
+    one_place = puppet.feet + [0.16, 0.0, 0.0]
+    puppet.placed = lambda request: one_place
+    puppet.ground_z[RL] = FOOT_Z - 1.0  # no ground there
+    puppet.reach("LEG_UP")
+    puppet.ground_z[RL] = FOOT_Z
+    puppet.reach("SEND")
+    puppet.placed = lambda request: one_place if puppet.cycle.counters["candidate"] < 2 else request.target_WF
+    puppet.reach("DETECT_CONTACT")
+    reasons = [event[1] for event in puppet.kinds("rejected")]
+    assert len(reasons) == 2 and "no contact" in reasons[0] and "0 mm from a foothold tried in vain" in reasons[1]
+    assert puppet.cycle.counters["candidate"] == 2
+    np.testing.assert_allclose(puppet.kinds("rejected")[1][2]["p_WF"], one_place[RL])

@@ -80,6 +80,19 @@ def test_a_stance_foot_that_sinks_while_another_swings_is_the_next_to_be_moved()
     assert len(puppet.kinds("late_collapse")) == 1
 
 
+def test_a_late_collapse_tells_the_most_that_the_foot_has_borne_since_it_was_accepted():
+    """That is known of the load under which the ground gave way: the foot that falls bears next to nothing."""
+    puppet = Puppet()
+    assert puppet.run(8.0, lambda: bool(puppet.kinds("accepted")))  # RL was pressed with 100 N
+    for load_n in (60.0, 82.0, 70.0):
+        puppet.load_n[RL] = load_n
+        puppet.tick()
+    puppet.load_n[RL], puppet.sunk[RL] = 4.0, 0.04
+    puppet.tick()
+    figures = puppet.kinds("late_collapse")[0][2]
+    assert figures["leg"] == RL and figures["held_n"] == pytest.approx(82.0)
+
+
 def test_a_foot_that_sinks_is_lifted_as_soon_as_the_others_can_carry():
     puppet = Puppet()
     assert puppet.run(8.0, lambda: bool(puppet.kinds("accepted")))

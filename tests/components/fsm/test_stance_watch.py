@@ -36,6 +36,19 @@ def test_with_two_trusted_feet_the_last_drift_stands():
     np.testing.assert_allclose(held.displacement(FEET + [0.03, 0.0, 0.0]), 0.01, atol=1e-12)
 
 
+def test_the_load_that_a_foot_has_borne_begins_anew_where_it_is_trusted_or_set_down():
+    loaded, standing = watch(), np.array([True, True, True, False])
+    for force_n in ([60.0, 60.0, 60.0, 60.0], [90.0, 40.0, 50.0, 200.0]):
+        loaded.load(np.array(force_n), standing)
+    assert loaded.borne_n.tolist() == [90.0, 60.0, 60.0, 0.0]
+    loaded.trust(0, FEET[0])
+    loaded.touched(1, FEET[1])
+    loaded.load(np.full(4, 30.0), standing)
+    assert loaded.borne_n.tolist() == [30.0, 30.0, 60.0, 0.0]
+    loaded.begin(FEET)
+    assert not loaded.borne_n.any()
+
+
 def test_a_safe_foothold_is_replaced_only_by_a_trusted_one_and_drifts_with_the_estimate():
     moving = watch()
     moving.touched(2, FEET[2] + [0.1, 0.0, 0.0])

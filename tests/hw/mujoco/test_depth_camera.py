@@ -140,6 +140,31 @@ def test_out_of_range_there_is_no_depth():
     assert seen.any() and not seen.all() and depth[seen].min() >= 0.5 and depth[seen].max() <= 0.7
 
 
+@pytest.mark.parametrize(
+    ("settings", "height", "roll"),
+    [
+        (Settings(), 0.4, np.pi),  # on its back it looks into the sky
+        (Settings(), 60.0, 0.0),  # the ground is out of range
+        (Settings(p_B=(0.0, 0.0, 0.0)), 0.4, 0.0),  # inside the trunk
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_where_there_is_nothing_to_see_no_pixel_has_a_depth(settings, height, roll):
+    machine = robot(depth=settings)
+    put(machine, 0.0, 0.0, height, (roll, 0.0, 0.0))
+    depth = machine.depth().depth_m
+    assert depth.shape == (60, 80) and (depth == 0.0).all()
+
+
+def test_on_its_side_it_measures_what_it_sees():
+    machine = robot()
+    put(machine, 0.0, 0.0, 0.4, (0.5 * np.pi, 0.0, 0.0))
+    points = points_W(machine.depth(), machine.data)
+    seen = np.isfinite(points[..., 2])
+    assert 0.2 < seen.mean() < 0.6
+    np.testing.assert_allclose(points[seen][:, 2], 0.0, atol=1e-4)
+
+
 def test_images_come_at_their_rate_and_never_blind():
     machine, blind = robot(depth=Settings(rate_hz=15.0)), robot(vision=False)
     due = []

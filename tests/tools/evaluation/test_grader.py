@@ -91,7 +91,7 @@ class Told:
     def probe(self, leg, point, forces=6, envelope=ENVELOPE, around=0):
         """A foot touches, and bears the first `forces` of the envelope."""
         self.foot(leg, point)
-        self.event("contact", leg)
+        self.event("contact", leg, around=around)
         asked = np.outer([130.0, *envelope, 12.0], UP)  # the touch-down itself may be the largest force
         begin = {"probe_t0": self.t + 0.12, "probe_dwell_s": DWELL_S}
         self.status(leg, LegStatus.PROBING, "PROBE", probe_leg=leg, probe_force_W=asked, **begin)
@@ -374,6 +374,18 @@ def test_a_late_collapse_under_more_than_was_certified_is_judged_by_what_the_foo
         force_W[1, 2] = carried
         told.foot(1, WEAK, force_W=force_W)
         told.foot(1, WEAK, force_W=np.zeros((4, 3)))  # it has fallen off already when it is noticed
+        told.event("late_collapse", 1)
+        assert told.counts["false_alarms"] == false
+
+
+def test_a_weaker_press_beside_the_foothold_takes_nothing_from_its_certificate():
+    for strong, weak, false in ((120.0, 40.0, 0), (40.0, 40.0, 1)):
+        told = Told(ON_PLANKS)
+        for around, peak in ((0, strong), (1, weak)):
+            told.probe(1, GOOD, envelope=(20.0, 20.0, 25.0, 30.0, 35.0, peak), around=around)
+            told.event("transition", 1, state="PROBE_AROUND")
+        told.accept(1)
+        told.foot(1, WEAK)
         told.event("late_collapse", 1)
         assert told.counts["false_alarms"] == false
 
