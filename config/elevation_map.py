@@ -51,6 +51,7 @@ class ElevationMap:
     # Heights.
     range_noise_m: Noise = 0.002  # standard deviation of a pixel's depth at 1 m; grows with its square
     std_min_m: Small = 0.003  # of a frame's height of a cell: a cell is no point
+    std_floor_m: Small = 0.001  # of a height however often it was seen: images share errors, and ground yields
     motion_m: Noise = 0.003  # how the base's way makes old heights uncertain [m/sqrt(m)]
     surface_m: Small = 0.03  # points of a cell that far below its highest are of another, lower surface
     gate: Annotated[float, Within(1.0, 1e4)] = 9.0  # squared Mahalanobis distance beyond which a height is doubted

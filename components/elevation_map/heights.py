@@ -58,6 +58,7 @@ class Heights:
         variance[cells] = np.where(
             fresh, noise + unrest, np.where(kept, old_variance, (1.0 - gain) * old_variance)
         )
+        variance[cells] = np.maximum(variance[cells], settings.std_floor_m**2)
         doubts[cells] = np.where(kept, count, 0)
         doubted[cells] = np.where(kept, measured, np.nan)
         self._seen_t.reshape(-1)[cells] = t

@@ -212,6 +212,18 @@ def test_a_board_that_tilts_and_comes_back_is_followed():
         np.testing.assert_allclose(np.nanmean(patch.height_m), -np.tan(angle) * 0.16, atol=0.015)
 
 
+def test_ground_that_sinks_slowly_after_a_long_look_is_followed():
+    sight = Sight(box("rock", (0.8, 0.0, 0.1), (0.12, 0.12, 0.1)), depth=NOISY)
+    rock = sight.model.geom("rock").id
+    seeing, pose = fresh_map(), [((0.0, 0.0, HEIGHT), (0.0, 0.0, 0.0))]
+    t = walk(sight, seeing, pose * 300)
+    for _ in range(150):  # 1 mm/s for 10 s
+        sight.model.geom_pos[rock][2] -= 0.001 / 15.0
+        t = walk(sight, seeing, pose, t0=t + 1.0 / 15.0)
+    top = seeing.patch(np.array([0.8, 0.0]), 2, 2, t).height_m
+    np.testing.assert_allclose(top, 0.19, atol=0.004)
+
+
 def test_rays_that_pass_below_a_height_make_it_forgotten():
     sight, seeing = Sight(box("wall", (0.95, 0.0, 0.06), (0.03, 0.3, 0.06)), depth=NOISY), fresh_map()
     pose = [((0.0, 0.0, HEIGHT), (0.0, 0.0, 0.0))]
