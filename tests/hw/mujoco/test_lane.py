@@ -48,7 +48,7 @@ def test_sections_come_in_order_and_do_not_overlap():
         own = [kind for kind in ("board", "beam", "tile", "high", "low") if has(scene.model, f"{number}_{kind}")]
         extents = np.array([scene.extent(f"{number}_{kind}") for kind in own])
         assert extents[:, 0].min() == pytest.approx(end, abs=0.015)
-        assert extents[:, 1].max() > end + 0.4
+        assert extents[:, 1].max() > end + 0.2
         end = extents[:, 1].max()
     assert scene.field.end_x == pytest.approx(scene.extent("run_out")[0])
 
