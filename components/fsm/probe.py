@@ -36,7 +36,6 @@ class Probe:
     """The six forces of an envelope, one dwell each.
 
     Attributes:
-        envelope_W: (6, 3) what the stride needs of the foothold, by rising normal force [N].
         asked_W: (6, 3) what the foot is asked to press with: the envelope, as far as statics allow [N].
         told: how many forces are over.
         held_n: the largest normal force held so far [N].
@@ -44,7 +43,7 @@ class Probe:
 
     def __init__(self, settings: Fsm):
         self._settings = settings
-        self.envelope_W = self.asked_W = np.zeros((0, 3))
+        self.asked_W = np.zeros((0, 3))
         self.told = 0
         self.held_n = 0.0
         self._t0 = 0.0
@@ -64,10 +63,10 @@ class Probe:
         """The largest force held is too small a share of the largest asked."""
         return self.held_n < self._settings.held_share * peak_n(self.asked_W, normal_W)
 
-    def limit(self, most_n: float, normal_W: np.ndarray) -> None:
-        """Ask for the envelope, each force scaled down to a normal component of at most `most_n` [N]."""
-        share = np.minimum(1.0, most_n / np.maximum(self.envelope_W @ normal_W, 1e-9))
-        self.asked_W = share[:, None] * self.envelope_W
+    def ask(self, envelope_W: np.ndarray, most_n: float, normal_W: np.ndarray) -> None:
+        """Ask for an envelope (6, 3), each force scaled down to a normal component of at most `most_n` [N]."""
+        share = np.minimum(1.0, most_n / np.maximum(envelope_W @ normal_W, 1e-9))
+        self.asked_W = share[:, None] * envelope_W
 
     def begin(self, t0: float) -> None:
         """The first force is asked from t0 on."""
