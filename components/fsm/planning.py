@@ -54,8 +54,10 @@ class Planning:
         return not self._course.stuck
 
     def walk(self, now: Observation, direction_B: np.ndarray) -> None:
-        """Start in a direction of the base frame (2,); a leg that does not stand safely goes first."""
+        """Start in a direction of the base frame (2,): a leg in the air first, then those that stand badly."""
         self._course.begin(self._footing(now), now.rpy[2], direction_B)
+        if self._motion.in_air:
+            self._course.put_first(self._turn.leg)
         for leg in np.flatnonzero(~self._motion.grounded):
             self._course.put_first(int(leg))
 

@@ -60,7 +60,7 @@ class Retreat:
         if now.t < self._motion.reference.swing_t1:
             return None
         if turn.no_way_back:
-            return Arrow(State.STOPPED, turn.no_way_back)
+            return Arrow(State.STOPPED, f"{turn.halt}; {turn.no_way_back}" if turn.halt else turn.no_way_back)
         if self._freed:
             return Arrow(State.SEND, f"{LEGS[turn.leg]} is free of the ground that gave way")
         return Arrow(Fork.UNFIT)
@@ -71,7 +71,7 @@ class Retreat:
         A foot that leaves the ground under load throws the base over.
         """
         settings, motion, leg = self._settings, self._motion, self._turn.leg
-        self._why_back = why
+        self._why_back, self._turn.no_way_back = why, ""
         safe_W = self._watch.safe(leg)
         if motion.in_air:
             self._swing.plan(now.t, safe_W, now)

@@ -188,7 +188,7 @@ def test_without_ground_to_go_back_to_the_robot_rests_on_three_feet():
     puppet.ground_z[RL] = -1.0
     puppet.cycle.stop(puppet.observe(), "commanded stop")
     puppet.reach("STOPPED")
-    assert "no ground to go back to" in puppet.cycle.reason
+    assert puppet.cycle.reason.startswith("commanded stop; RL has no ground to go back to")
     assert puppet.status[RL] == SWING and puppet.cycle.reference.support_leg == RL
     assert puppet.feet[RL, 2] > -0.15
     puppet.run(1.0)
@@ -196,6 +196,50 @@ def test_without_ground_to_go_back_to_the_robot_rests_on_three_feet():
     puppet.cycle.walk(puppet.observe(), np.array([1.0, 0.0]), "forward")
     assert puppet.run(8.0, lambda: bool(puppet.kinds("accepted")))
     assert puppet.kinds("accepted")[0][2]["leg"] == RL
+
+
+def resting_on_three(leg):
+    """A robot that has lost the ground under a leg of the crawl, and has it in the air."""
+    puppet = Puppet()
+    assert puppet.run(
+        60.0, lambda: puppet.cycle.state == "DETECT_CONTACT" and puppet.cycle.reference.swing_leg == leg
+    )
+    puppet.run(0.2)
+    puppet.ground_z[leg] = -1.0
+    puppet.cycle.stop(puppet.observe(), "commanded stop")
+    puppet.reach("STOPPED")
+    assert puppet.status[leg] == SWING
+    return puppet
+
+
+@pytest.mark.parametrize("leg", [FL, RR, FR])
+def test_a_command_begins_with_the_leg_in_the_air_whatever_the_crawl_says(leg):
+    puppet = resting_on_three(leg)
+    puppet.ground_z[leg] = 0.0265
+    puppet.cycle.walk(puppet.observe(), np.array([-1.0, 0.0]), "backward")
+    for _ in range(2500):
+        puppet.tick()
+        assert [status != STANCE for status in puppet.status].count(True) <= 1
+        if len(puppet.kinds("accepted")) and puppet.kinds("accepted")[-1][2]["leg"] == leg:
+            break
+    assert puppet.kinds("accepted")[-1][2]["leg"] == leg
+
+
+def test_a_way_back_that_failed_once_and_was_found_then_is_forgotten():
+    puppet = Puppet(Fsm(probe_around=False, alternatives=0))
+    puppet.reach("DETECT_CONTACT")
+    puppet.ground_z[RL] = -1.0
+    puppet.reach("RETURN_SAFE")
+    puppet.reach("LEG_UP")
+    puppet.ground_z[RL] = 0.0265
+    puppet.sunk[FR] = (
+        0.04  # the leg sets off for its foothold again, and finds it; then it is the other one's turn
+    )
+    puppet.reach("PRE_OPT")
+    puppet.reach("LEG_UP")
+    assert puppet.status[FR] == SWING and puppet.status[RL] == STANCE
+    assert puppet.run(8.0, lambda: bool(puppet.kinds("accepted")))
+    assert puppet.kinds("accepted")[0][2]["leg"] == FR and not puppet.kinds("stopped")
 
 
 def test_a_foot_that_sinks_while_the_robot_rests_is_leant_off_and_moved_first():
