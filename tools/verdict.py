@@ -7,6 +7,10 @@ from dataclasses import dataclass
 from surefoot.tools.picture import Picture
 
 
+_CROSSED = {"planks": "platform crossed", "slope": "platform crossed"}
+"""What is said of a far side that has a name of its own."""
+
+
 @dataclass(frozen=True)
 class Verdict:
     """How a run stands.
@@ -33,7 +37,8 @@ def verdict(picture: Picture, terrain: str, seconds: float, interactive: bool) -
 
     Args:
         picture: what has been heard.
-        terrain: its kind; a goal reached forward on planks is the other side.
+        terrain: its kind; a goal reached forward on any but flat ground is the other side. In a trap nothing ahead
+            holds: to stop is what the robot should do.
         seconds: limit of the run's time.
         interactive: a person watches.
     """
@@ -41,8 +46,10 @@ def verdict(picture: Picture, terrain: str, seconds: float, interactive: bool) -
     if reference is None:
         return Verdict()
     if reference.finished:
-        crossed = terrain == "planks" and picture.direction == "forward"
-        return Verdict("platform crossed" if crossed else "goal reached", over=True, good=True)
+        crossed = terrain != "flat" and picture.direction == "forward"
+        return Verdict(
+            _CROSSED.get(terrain, f"{terrain} crossed") if crossed else "goal reached", over=True, good=True
+        )
     if reference.state == "DAMP":
         if reference.reason == "commanded":  # it was not damped before: at the start nobody has commanded it
             return Verdict("damped by command", over=True, good=True)
@@ -58,5 +65,6 @@ def verdict(picture: Picture, terrain: str, seconds: float, interactive: bool) -
         return Verdict("time is up", over=True, good=True)
     if reference.state == "STOPPED" and "commanded" not in reference.reason:
         advice = "`surefoot command backward` takes the robot back, left or right around, forward tries again"
-        return Verdict(f"the robot stopped: {reference.reason}", over=not interactive, advice=advice)
+        stopped = f"the robot stopped: {reference.reason}"
+        return Verdict(stopped, over=not interactive, good=terrain == "trap", advice=advice)
     return Verdict()

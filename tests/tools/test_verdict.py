@@ -27,12 +27,13 @@ def test_the_goal_and_the_time_are_good_ends():
     assert not judged(state="PROBE", seconds=5.1).over
 
 
-def test_only_planks_walked_forward_are_a_platform_crossed():
+def test_only_ground_walked_forward_is_crossed():
     finished = {"state": "STOPPED", "finished": True}
     assert judged(**finished).reason == "platform crossed"
     assert judged(commands=("backward", "stop", "forward", "stand"), **finished).reason == "platform crossed"
     assert judged(commands=("forward", "left"), **finished).reason == "goal reached"
     assert judged(terrain="flat", **finished).reason == "goal reached"
+    assert judged(terrain="rocks", **finished).reason == "rocks crossed"
 
 
 @pytest.mark.parametrize("interactive", [True, False])
@@ -57,3 +58,8 @@ def test_a_stop_waits_for_a_person_where_there_is_one():
     assert not waits.over and ends.over and not ends.good
     assert "surefoot command backward" in waits.advice and waits.advice == ends.advice
     assert judged(state="STOPPED", reason="commanded stop") == replace(judged(state="PROBE"))
+
+
+def test_to_stop_in_a_trap_is_what_the_robot_should_do():
+    stop = {"state": "STOPPED", "reason": "no safe foothold among the alternatives"}
+    assert judged(terrain="trap", **stop).good and not judged(terrain="rocks", **stop).good
