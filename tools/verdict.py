@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from surefoot.tools.picture import Picture
 
-
 _CROSSED = {"planks": "platform crossed", "slope": "platform crossed"}
 """What is said of a far side that has a name of its own."""
 
