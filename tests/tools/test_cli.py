@@ -5,8 +5,8 @@ import pytest
 from surefoot.bus.codec import check
 from surefoot.bus.errors import MessageError
 from surefoot.bus.messages import HardwareState
-from surefoot.tools import cli
 from surefoot.tools.cli import main
+from surefoot.tools.commands import topics
 
 
 @pytest.mark.parametrize(
@@ -58,6 +58,6 @@ def test_a_malformed_file_is_named_with_its_line(tmp_path, capsys):
     ],
 )
 def test_an_error_of_the_program_keeps_its_traceback(kind, fault, monkeypatch):
-    monkeypatch.setattr(cli, "_child", lambda call: fault())
+    monkeypatch.setattr(topics, "_run", lambda call: fault())
     with pytest.raises(kind):
-        main(["child", "flat", "io"])
+        main(["topics"])

@@ -1,0 +1,26 @@
+"""`surefoot command`: tell the robot what to do."""
+
+from __future__ import annotations
+
+import argparse
+
+from surefoot.tools.commands.call import CallError
+from surefoot.tools.commands.say import say_on_bus
+
+
+def add(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser("command", help="command the robot of a running stack")
+    parser.add_argument("command", help="stand, sit, forward, backward, left, right, stop or damp")
+    parser.add_argument("--namespace", default="surefoot")
+    parser.set_defaults(run=_run)
+
+
+def _run(call: argparse.Namespace) -> int:
+    from surefoot.components.clock_messages import REQUEST
+    from surefoot.components.fsm.fsm import COMMANDS
+
+    if call.command not in COMMANDS:
+        raise CallError(f"unknown command {call.command!r}; there are {', '.join(COMMANDS)}")
+    say_on_bus(call.namespace, REQUEST, call.command)
+    return 0

@@ -1,0 +1,49 @@
+"""`surefoot run`: every process of a deployment."""
+
+from __future__ import annotations
+
+import argparse
+
+from surefoot.tools.commands.call import deployment_file
+
+_RUN = """\
+Start every process of a deployment and show how it goes, on one screen.
+
+The run ends when the goal is reached (on the planks: the platform is crossed), when the robot has fallen, has lost
+its estimate or is damped with `surefoot command damp`, after --for seconds of its time, or with Ctrl-C; then every
+process is ended in order. A robot that finds no safe foothold goes back to
+its last one and stands: on a terminal the run goes on and waits for `surefoot command backward` (or left,
+right, forward, stop) from another one; with --plain, or without a terminal, that ends the run.
+
+With the simulated clock time waits for every process: the run may be slower than real time, and
+`surefoot restart NAME` goes on where the process stood (a restarted fsm stands the robot and waits for a
+direction). With --set run.clock=monotonic it keeps real time; a machine that cannot solve the MPC fast
+enough says so and runs its light profile, and estimator, wbc and fsm are restarted only while the robot is
+damped.
+
+exit code: 0 goal reached, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
+"""
+
+
+def add(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "run",
+        help="start every process of a deployment",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_RUN,
+        epilog="example: surefoot run planks",
+    )
+    parser.add_argument("config", nargs="?", default="planks", help="a deployment file, or its name in config/")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
+    parser.add_argument(
+        "--for", dest="seconds", type=float, default=0.0, help="end after this much of the run's time"
+    )
+    parser.add_argument("--plain", action="store_true", help="lines instead of a screen")
+    parser.set_defaults(run=_run)
+
+
+def _run(call: argparse.Namespace) -> int:
+    from surefoot.tools.live_run import live_run
+
+    return live_run(deployment_file(call.config), call.set, call.seconds, call.plain)
