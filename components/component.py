@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 
 from surefoot.bus.message import Message
 from surefoot.bus.topics import TOPICS, topic
+from surefoot.components.memory import Memory
 from surefoot.config.deployment import Deployment
 
 
@@ -93,6 +94,7 @@ class Component:
     """Base of every component. Class attributes say its name, inputs and outputs; `bus.topics` its timing.
 
     Attributes:
+        memory: what it carries from one step to the next.
         complete: streams of which it needs every message; of others the newest is enough on the monotonic clock.
         trouble: in words why the last step could not do its work; empty when it could. The process's status
             tells it.
@@ -101,6 +103,8 @@ class Component:
     name: ClassVar[str]
     inputs: ClassVar[tuple[str, ...]] = ()
     outputs: ClassVar[tuple[str, ...]] = ()
+
+    memory: ClassVar[Memory] = Memory()
 
     complete: tuple[str, ...] = ()
     trouble: str = ""
@@ -132,8 +136,17 @@ class Component:
         return True
 
     def snapshot(self) -> dict[str, Any]:
-        """State that a restart or a replay must have: numbers, strings, bytes, lists and arrays by name."""
-        return {}
+        """Its memory as numbers, strings, bytes, lists and arrays by name, for a restart or a replay.
+
+        With it, and with the same inputs, another object of the class publishes the same bytes from here on.
+        Arrays are the component's own: to be packed or copied before its next step.
+        """
+        return self.memory.of(self)
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take over what `snapshot` gave."""
+        """Take over what `snapshot` gave, after `warm_up`.
+
+        Raises:
+            ForeignMemory: it is not of this component, or of other code; nothing has been taken over.
+        """
+        self.memory.restore(self, state)
