@@ -24,6 +24,7 @@ class Health:
     Attributes:
         life, reason: what the process is doing, and in words why nothing moves.
         lost: an input that did not arrive; empty when all did.
+        note: in words what is to be known of the process's start; mostly empty.
         overruns: deadlines missed.
         t: run's time of the last status [s].
     """
@@ -31,7 +32,7 @@ class Health:
     def __init__(
         self, component: Component, session: Session, buffers: TopicBuffers, process: Process, boot: int = 0
     ):
-        self.life, self.reason, self.lost = Life.INIT, "", ""
+        self.life, self.reason, self.lost, self.note = Life.INIT, "", "", ""
         self.overruns = self.steps = 0
         self.t = 0.0
         self._component, self._session, self._buffers, self._boot = component, session, buffers, boot
@@ -82,5 +83,5 @@ class Health:
     def _words(self) -> str:
         """All there is to say, the gravest first."""
         bad = f"dropped {self._buffers.last_error}" if self._buffers.bad else ""
-        said = self.reason, self._component.trouble, self.lost, bad
+        said = self.reason, self._component.trouble, self.lost, bad, self.note
         return "; ".join(words for words in said if words)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections import deque
-from functools import partial
 
 from surefoot.bus.codec import check, encode
 from surefoot.bus.message import Message
@@ -13,7 +11,8 @@ from surefoot.bus.topics import TOPICS, Process
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Component, Inbox, Life, Outbox
 from surefoot.components.health import Health
-from surefoot.components.topic_buffer import KEPT, TopicBuffers
+from surefoot.components.memory import ForeignMemory
+from surefoot.components.topic_buffer import TopicBuffers
 
 _INPUT_TIMEOUT_S = 10.0
 
@@ -48,28 +47,28 @@ class Stepper:
         self._session = session
         self._inbox = Inbox(component.inputs)
         self._outgoing: list[tuple[str, Message]] = []
-        self._kept: dict[str, deque[bytes]] = {key: deque(maxlen=KEPT) for key in component.outputs}
         self._lossless = {key: simulated or not TOPICS[key].rate_hz for key in component.outputs}
         self._active = False
 
     def connect(self) -> None:
-        """Begin to listen to the inputs, and keep the last outputs for readers that come late."""
+        """Begin to listen to the inputs."""
         self.buffers.connect(self._session)
-        for key, kept in self._kept.items():
-            self._session.serve(f"{clock.KEPT}/{key}", partial(list, kept))
 
     def resume(self, resume: clock.Resume, visible: dict[str, int]) -> None:
         """Take the place of a process that is gone, where its last finished step left it."""
-        kept = {key: self._session.ask(f"{clock.KEPT}/{key}") for key in self.component.inputs if visible.get(key)}
+        kept = {key: self._kept(key) for key in self.component.inputs if visible.get(key)}
         self.buffers.resume(resume.had, visible, kept, self._inbox)
         self.outbox.continue_from(visible)
         if resume.snapshot:
-            self.component.restore(clock.unpack_snapshot(resume.snapshot))
-            self._active = True
+            try:
+                self.component.restore(clock.unpack_snapshot(resume.snapshot))
+                self._active = True
+            except ForeignMemory as error:  # of code that has changed since
+                self.health.note = f"began anew: {error}"
 
     def read_visible(self, visible: dict[str, int]) -> None:
         """Take exactly the messages that are visible in simulated time."""
-        self.health.lost = self.buffers.deliver_visible(visible, self._inbox, _INPUT_TIMEOUT_S)
+        self.health.lost = self.buffers.deliver_visible(visible, self._inbox, _INPUT_TIMEOUT_S, self._kept)
 
     def read_all(self) -> None:
         """Take everything that has arrived."""
@@ -98,16 +97,15 @@ class Stepper:
             self.health.life = Life.IDLE if done else Life.DEACTIVATING
         return done
 
-    def publish(self) -> dict[str, int]:
-        """Send what the step published; how many messages on each topic."""
-        counts: dict[str, int] = {}
+    def publish(self) -> dict[str, list[bytes]]:
+        """Send what the step published; the bytes of the messages on each topic."""
+        sent: dict[str, list[bytes]] = {}
         for key, message in self._outgoing:
             payload = encode(message)
-            self._kept[key].append(payload)
             self._session.put(key, payload, self._lossless[key])
-            counts[key] = counts.get(key, 0) + 1
+            sent.setdefault(key, []).append(payload)
         self._outgoing.clear()
-        return counts
+        return sent
 
     def snapshot(self) -> bytes:
         """What the component remembers after its last step; empty while it is not active."""
@@ -122,6 +120,10 @@ class Stepper:
         self._outgoing.clear()  # half a step
         self.health.life, self.health.reason = Life.FAILED, f"{type(error).__name__}: {error}"
         self.tell(self.health.t, now=True)
+
+    def _kept(self, key: str) -> list[bytes]:
+        """The last messages of a topic, from who keeps them."""
+        return self._session.ask(f"{clock.KEPT}/{key}")
 
     def _send(self, key: str, message: Message) -> None:
         self._outgoing.append((key, check(message)))

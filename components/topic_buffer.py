@@ -17,7 +17,13 @@ KEPT = 32
 """Messages of a topic that its writer keeps for a reader that comes late, or again."""
 
 _WINDOW = 256  # bytes wait for a reader at the most; a number further ahead than this is not the writer's
+_ON_ITS_WAY_S = 0.3
 _MISFITS = 8  # so many messages out of sequence in a row are a new sequence
+
+
+def _nobody(key: str) -> list[bytes]:
+    """Nobody keeps any message of a topic."""
+    return []
 
 
 class _Topic:
@@ -135,10 +141,13 @@ class TopicBuffers:
             self._take(key, topic, seen, inbox)
         inbox.clear_new()
 
-    def deliver_visible(self, visible: dict[str, int], inbox: Inbox, timeout_s: float) -> str:
+    def deliver_visible(
+        self, visible: dict[str, int], inbox: Inbox, timeout_s: float, ask: Callable[[str], list[bytes]] = _nobody
+    ) -> str:
         """Hand over exactly the messages with sequence numbers below the counts in `visible`.
 
-        Waits for those that are still on their way; one that does not come is skipped.
+        Waits for those that are still on their way, and asks for one that was sent before its reader was there;
+        one that does not come is skipped.
 
         Returns:
             What did not come in time, in words; empty when all is there.
@@ -151,7 +160,12 @@ class TopicBuffers:
             self._sort(key, topic)
             self._take(key, topic, wanted, inbox)
             while topic.next < wanted:
-                if not self._wait(topic, timeout_s):
+                missing = topic.next
+                if not self._wait(topic, _ON_ITS_WAY_S):
+                    topic.waiting.extend(ask(key))
+                    self._sort(key, topic)
+                    self._take(key, topic, wanted, inbox)
+                if topic.next == missing and not self._wait(topic, timeout_s):
                     lost = f"{key}: message {topic.next} of {wanted} did not arrive in {timeout_s:g} s"
                     topic.jump(min([wanted, *topic.early]))
                 self._sort(key, topic)
@@ -162,6 +176,7 @@ class TopicBuffers:
         """Hand over, in order and without a gap, what is here up to the count."""
         while topic.next < wanted and topic.next in topic.early:
             message, topic.had[topic.next] = topic.early.pop(topic.next)
+            topic.boot = max(topic.boot, message.boot)
             topic.had.pop(topic.next - KEPT, None)
             topic.next += 1
             inbox.deliver(key, message)
@@ -185,6 +200,8 @@ class TopicBuffers:
                 topic.early[seq] = message, mark
             elif there is not None and message.boot > there[0].boot:
                 topic.early[seq] = message, mark  # the writer was restarted before its step was over
+            elif seq < topic.next and message.boot > topic.boot:
+                continue  # said before by a process that went when its step was over
             elif mark not in (topic.had.get(seq), there and there[1]):
                 self._drop(f"{key}: message {seq} is out of place, next is {topic.next}: a second publisher?")
 

@@ -17,8 +17,6 @@ from surefoot.bus.messages import FsmEvent, MotionReference, OperatorCommand, Pr
 from surefoot.bus.session import Session, refuse_second_hub
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
-from surefoot.components.component import Component
-from surefoot.components.registry import component_class
 from surefoot.config.deployment import Deployment
 from surefoot.tools.picture import Picture, SupportMargin, Watched
 
@@ -149,10 +147,6 @@ class Supervisor:
 
     def _start_again(self, watched: Watched) -> None:
         watched.restarts += 1
-        if self._simulated and watched.name == "fsm" and component_class("fsm").snapshot is Component.snapshot:
-            # It keeps no memory of what the robot does, and would begin by damping it. In real time it is damped.
-            self._command("stand")
-            self.note("fsm has lost its place and stands the robot: `surefoot command forward` goes on")
         self._start(watched.name)
 
     @staticmethod

@@ -16,10 +16,9 @@ its last one and stands: on a terminal the run goes on and waits for `surefoot c
 right, forward, stop) from another one; with --plain, or without a terminal, that ends the run.
 
 With the simulated clock time waits for every process: the run may be slower than real time, and
-`surefoot restart NAME` goes on where the process stood (a restarted fsm stands the robot and waits for a
-direction). With --set run.clock=monotonic it keeps real time; a machine that cannot solve the MPC fast
-enough says so and runs its light profile, and estimator, wbc and fsm are restarted only while the robot is
-damped.
+`surefoot restart NAME` goes on exactly where the process stood. With --set run.clock=monotonic it keeps real
+time; a machine that cannot solve the MPC fast enough says so and runs its light profile, and estimator, wbc and
+fsm are restarted only while the robot is damped.
 
 exit code: 0 goal reached, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
 """
