@@ -18,6 +18,7 @@ import zenoh
 from surefoot.bus.errors import BusError
 
 _CONNECT_MS = 30_000
+_MARK_BYTES = 32
 _TX = {
     "lease": 2000,
     "keep_alive": 4,
@@ -34,8 +35,22 @@ def socket_path(namespace: str) -> Path:
     return Path(tempfile.gettempdir()) / f"surefoot-{os.getuid()}" / f"{namespace}.sock"
 
 
+class Marked(bytes):
+    """Bytes from the bus, with the mark of the session that published them.
+
+    Attributes:
+        writer: the session's own, as the bus numbers it; empty when the bytes came some other way.
+    """
+
+    writer: bytes = b""
+
+
 class Session:
-    """Publishes and subscribes bytes under a namespace."""
+    """Publishes and subscribes bytes under a namespace.
+
+    Attributes:
+        mark: what it publishes bears it; no other session has the same.
+    """
 
     def __init__(self, namespace: str, hub: bool = False, connect_ms: int = _CONNECT_MS):
         """Open the hub, or connect to it.
@@ -55,8 +70,14 @@ class Session:
             raise BusError(
                 f"{what} {path}: is `surefoot run` running with namespace {namespace!r}? ({error})"
             ) from None
+        self.mark = _mark_of(self._session.info.zid())
+        self._hub = hub
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._kept: list[object] = []
+
+    def hub_marks(self) -> tuple[bytes, ...]:
+        """Of the hubs this session is connected to; its own if it is one."""
+        return (self.mark,) if self._hub else tuple(map(_mark_of, self._session.info.routers_zid()))
 
     def put(self, key: str, payload: bytes, lossless: bool = True) -> None:
         """Publish bytes on a key of the namespace.
@@ -72,18 +93,21 @@ class Session:
             control = zenoh.CongestionControl.BLOCK if lossless else zenoh.CongestionControl.DROP
             publisher = self._session.declare_publisher(f"{self._prefix}/{key}", congestion_control=control)
             self._publishers[key] = publisher
-        publisher.put(payload)
+        publisher.put(payload, attachment=self.mark)
 
-    def subscribe(self, key: str, receive: Callable[[str, bytes], None]) -> None:
-        """Call `receive(key, bytes)` for every message; it must only store, it runs in the session's thread."""
+    def subscribe(self, key: str, receive: Callable[[str, Marked], None]) -> None:
+        """Call `receive(key, bytes)` for every message; it must only store, it runs in the session's thread.
+
+        The bytes bear their writer's mark.
+        """
         skip = len(self._prefix) + 1
 
         def on_sample(sample: zenoh.Sample) -> None:
-            receive(str(sample.key_expr)[skip:], sample.payload.to_bytes())
+            receive(str(sample.key_expr)[skip:], _marked(sample))
 
         self._kept.append(self._session.declare_subscriber(f"{self._prefix}/{key}", on_sample))
 
-    def newest(self, key: str) -> Callable[[], bytes | None]:
+    def newest(self, key: str) -> Callable[[], Marked | None]:
         """A function that gives the newest message since it was last called, or None.
 
         Nothing runs between two calls, whatever the topic's rate: right for a display.
@@ -91,9 +115,9 @@ class Session:
         subscriber = self._session.declare_subscriber(f"{self._prefix}/{key}", zenoh.handlers.RingChannel(1))
         self._kept.append(subscriber)
 
-        def take() -> bytes | None:
+        def take() -> Marked | None:
             sample = subscriber.try_recv()
-            return None if sample is None else sample.payload.to_bytes()
+            return None if sample is None else _marked(sample)
 
         return take
 
@@ -104,22 +128,39 @@ class Session:
         def on_query(query: zenoh.Query) -> None:
             with query:
                 for index, payload in enumerate(answer()):
-                    query.reply(f"{whole}/{index}", payload)
+                    query.reply(f"{whole}/{index}", payload, attachment=self.mark)
 
         self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
 
-    def ask(self, key: str, timeout_s: float = 2.0) -> list[bytes]:
-        """What is served under a key, in order; empty when nobody serves it."""
-        replies = self._session.get(f"{self._prefix}/{key}/*", timeout=timeout_s)
+    def ask(self, key: str, timeout_s: float = 2.0) -> list[Marked]:
+        """What is served under a key, in order; empty when nobody serves it.
+
+        Of two that serve it everything comes, first all of one of them.
+        """
+        replies = self._session.get(
+            f"{self._prefix}/{key}/*", timeout=timeout_s, consolidation=zenoh.ConsolidationMode.NONE
+        )
         answers = {}
         for reply in replies:
-            if reply.ok is not None:
-                answers[int(str(reply.ok.key_expr).rsplit("/", 1)[1])] = reply.ok.payload.to_bytes()
+            if reply.ok is not None and (index := str(reply.ok.key_expr).rsplit("/", 1)[1]).isdecimal():
+                payload = _marked(reply.ok)
+                answers[payload.writer, int(index)] = payload
         return [answers[index] for index in sorted(answers)]
 
     def close(self) -> None:
         """Leave the bus."""
         self._session.close()
+
+
+def _mark_of(session: zenoh.ZenohId) -> bytes:
+    return str(session).encode()
+
+
+def _marked(sample: zenoh.Sample) -> Marked:
+    marked = Marked(sample.payload.to_bytes())
+    if sample.attachment is not None:
+        marked.writer = sample.attachment.to_bytes()[:_MARK_BYTES]
+    return marked
 
 
 def refuse_second_hub(namespace: str) -> None:

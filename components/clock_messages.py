@@ -9,6 +9,8 @@ from typing import Any
 import msgpack
 import numpy as np
 
+from surefoot.bus.errors import MessageError
+
 RELEASE, DONE, HELLO = "clock/release", "clock/done", "clock/hello"
 """Key prefixes; the process's name follows. HELLO: the process is ready, or ready again after a restart."""
 
@@ -36,6 +38,23 @@ class Resume:
 
 
 @dataclass(frozen=True)
+class Release:
+    """A step is due.
+
+    Attributes:
+        t_ns: its time [ns]; `STOP_NS`: end.
+        visible: how many messages of every topic are visible.
+        resume: after a HELLO, where the process takes up.
+        writers: marks of the sessions that are, or have been, each process; None where nothing has changed.
+    """
+
+    t_ns: int
+    visible: dict[str, int]
+    resume: Resume | None = None
+    writers: dict[str, list[bytes]] | None = None
+
+
+@dataclass(frozen=True)
 class Done:
     """A step is over.
 
@@ -50,15 +69,46 @@ class Done:
     snapshot: bytes
 
 
-def pack_release(t_ns: int, visible: dict[str, int], resume: Resume | None = None) -> bytes:
-    """A release at `t_ns` with how many messages of every topic are visible; `resume` after a HELLO."""
-    return msgpack.packb([t_ns, visible, resume and [resume.had, resume.snapshot]])
+def pack_release(release: Release) -> bytes:
+    """Bytes of a release."""
+    resume = release.resume and [release.resume.had, release.resume.snapshot]
+    return msgpack.packb([release.t_ns, release.visible, resume, release.writers])
 
 
-def unpack_release(payload: bytes) -> tuple[int, dict[str, int], Resume | None]:
-    """What `pack_release` packed."""
-    t_ns, visible, resume = msgpack.unpackb(payload)
-    return t_ns, visible, resume and Resume(*resume)
+def unpack_release(payload: bytes) -> Release:
+    """What `pack_release` packed.
+
+    Raises:
+        MessageError: it is no release.
+    """
+    t_ns, visible, resume, writers = _parts(payload, 4, RELEASE)
+    _require(type(t_ns) is int, RELEASE, f"time {t_ns!r:.40}")
+    _require(_are_counts(visible), RELEASE, f"counts {visible!r:.80}")
+    if writers is not None:
+        _require(_are_lists_of_bytes(writers), RELEASE, f"writers {writers!r:.80}")
+    if resume is None:
+        return Release(t_ns, visible, None, writers)
+    _require(isinstance(resume, list) and len(resume) == 2, RELEASE, f"resume {resume!r:.80}")
+    had, snapshot = resume
+    _require(_are_counts(had), RELEASE, f"counts {had!r:.80}")
+    _require(isinstance(snapshot, bytes), RELEASE, f"snapshot {snapshot!r:.40}")
+    return Release(t_ns, visible, Resume(had, snapshot), writers)
+
+
+def pack_hello(boot: int) -> bytes:
+    """A process says that it is ready; `boot` counts its restarts."""
+    return msgpack.packb(boot)
+
+
+def unpack_hello(payload: bytes) -> int:
+    """What `pack_hello` packed.
+
+    Raises:
+        MessageError: it is no hello.
+    """
+    boot = _unpack(payload, HELLO)
+    _require(type(boot) is int and boot >= 0, HELLO, f"{boot!r:.40}")
+    return boot
 
 
 def pack_done(done: Done) -> bytes:
@@ -67,8 +117,16 @@ def pack_done(done: Done) -> bytes:
 
 
 def unpack_done(payload: bytes) -> Done:
-    """What `pack_done` packed."""
-    return Done(*msgpack.unpackb(payload))
+    """What `pack_done` packed.
+
+    Raises:
+        MessageError: it is no done token.
+    """
+    t_ns, sent, snapshot = _parts(payload, 3, DONE)
+    _require(type(t_ns) is int, DONE, f"time {t_ns!r:.40}")
+    _require(_are_lists_of_bytes(sent), DONE, f"messages {sent!r:.80}")
+    _require(isinstance(snapshot, bytes), DONE, f"snapshot {snapshot!r:.40}")
+    return Done(t_ns, sent, snapshot)
 
 
 def pack_snapshot(state: dict[str, Any]) -> bytes:
@@ -79,6 +137,37 @@ def pack_snapshot(state: dict[str, Any]) -> bytes:
 def unpack_snapshot(payload: bytes) -> dict[str, Any]:
     """What `pack_snapshot` packed; arrays may be written to."""
     return msgpack.unpackb(payload, ext_hook=_unpack_array)
+
+
+def _parts(payload: bytes, count: int, what: str) -> list[Any]:
+    parts = _unpack(payload, what)
+    _require(isinstance(parts, list) and len(parts) == count, what, f"{type(parts).__name__}")
+    return parts
+
+
+def _unpack(payload: bytes, what: str) -> Any:
+    try:
+        return msgpack.unpackb(payload)
+    except Exception as error:
+        raise MessageError(f"{what}: not msgpack ({error!s:.80}); {len(payload)} bytes dropped") from None
+
+
+def _are_counts(value: Any) -> bool:
+    return isinstance(value, dict) and all(
+        isinstance(key, str) and type(count) is int and count >= 0 for key, count in value.items()
+    )
+
+
+def _are_lists_of_bytes(value: Any) -> bool:
+    return isinstance(value, dict) and all(
+        isinstance(name, str) and isinstance(items, list) and all(isinstance(item, bytes) for item in items)
+        for name, items in value.items()
+    )
+
+
+def _require(holds: bool, what: str, found: str) -> None:
+    if not holds:
+        raise MessageError(f"{what}: {found} is not what the clock's messages hold")
 
 
 def _pack_array(value: Any) -> Any:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import queue
 from collections import deque
+from collections.abc import Callable
 
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import OperatorCommand
@@ -12,24 +12,34 @@ from surefoot.components import clock_messages as clock
 from surefoot.components.topic_buffer import KEPT
 
 _TOPIC = "operator/command"
+_LONGEST = 64  # characters of a command
 
 
 class OperatorDesk:
-    """Turns requests into messages on `operator/command`."""
+    """Turns requests into messages on `operator/command`.
 
-    def __init__(self, session: Session):
+    What is no word is refused here; which words are commands is the state machine's business, which answers.
+    """
+
+    def __init__(self, session: Session, refuse: Callable[[str], None]):
+        """`refuse` is told, by key, of each request that is no word."""
         self._session = session
-        self._requests: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        self._requests: deque[bytes] = deque(maxlen=KEPT)
+        self._refuse = refuse
         self._kept: deque[bytes] = deque(maxlen=KEPT)
         self._sent = 0
-        session.subscribe(clock.REQUEST, lambda key, payload: self._requests.put(payload))
+        session.subscribe(clock.REQUEST, lambda key, payload: self._requests.append(payload))
         session.serve(f"{clock.KEPT}/{_TOPIC}", lambda: list(self._kept))
 
     def publish(self, t: float) -> int:
         """Publish at time `t` [s] what has been asked; how many commands that were."""
         count = 0
-        while not self._requests.empty():
-            command = self._requests.get().decode(errors="replace")
+        for _ in range(len(self._requests)):
+            asked = self._requests.popleft()
+            command = asked.decode(errors="replace")
+            if len(command) > _LONGEST or not command.isprintable() or "\ufffd" in command:
+                self._refuse(f"{clock.REQUEST}: {asked[:_LONGEST]!r:.80} is no command")
+                continue
             payload = encode(OperatorCommand(t=t, seq=self._sent, valid=True, command=command))
             self._kept.append(payload)
             self._session.put(_TOPIC, payload)

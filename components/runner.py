@@ -6,7 +6,8 @@ import gc
 import queue
 import time
 
-from surefoot.bus.session import Session
+from surefoot.bus.errors import MessageError
+from surefoot.bus.session import Marked, Session
 from surefoot.bus.topics import nominal_hz, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
@@ -30,7 +31,7 @@ class Runner:
     def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0):
         """`boot` counts the restarts of this process; `parent` is the supervisor's process id, 0 the starter's."""
         self._end = ProcessEnd(parent)
-        self._deployment, self._name = deployment, name
+        self._deployment, self._name, self._boot = deployment, name, boot
         self._process = processes(deployment.mpc.profile)[name]
         self._monotonic = deployment.run.clock == "monotonic"
         self._session = Session(deployment.run.namespace, hub=self.hub)
@@ -88,26 +89,37 @@ class Runner:
 
     def _follow_simulated_time(self) -> None:
         """Step at each release of the clock's master; the outputs, then the done token, answer it."""
-        releases: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        releases: queue.SimpleQueue[Marked] = queue.SimpleQueue()
         stepper, name = self._stepper, self._name
         self._session.subscribe(f"{clock.RELEASE}/{name}", lambda key, payload: releases.put(payload))
-        self._session.put(f"{clock.HELLO}/{name}", b"")
+        self._session.put(f"{clock.HELLO}/{name}", clock.pack_hello(self._boot))
         last_ns = None
         while not self._end.due:
             stepper.tell((last_ns or 0) / NS)
             try:
-                t_ns, visible, resume = clock.unpack_release(releases.get(timeout=_LOOK_S))
+                payload = releases.get(timeout=_LOOK_S)
+                release = clock.unpack_release(payload)
+            except MessageError as error:
+                stepper.buffers.drop(str(error))
+                continue
             except queue.Empty:
                 if last_ns is None:
                     # The hub may have come up after the first greeting.
-                    self._session.put(f"{clock.HELLO}/{name}", b"")
+                    self._session.put(f"{clock.HELLO}/{name}", clock.pack_hello(self._boot))
                 continue
+            if payload.writer not in self._session.hub_marks():
+                at = release.t_ns / NS
+                stepper.buffers.drop(f"{clock.RELEASE}: a second clock releases for {at:.3f} s")
+                continue
+            t_ns, visible = release.t_ns, release.visible
+            if release.writers is not None:
+                stepper.buffers.trust(release.writers)
             if t_ns == clock.STOP_NS:
                 return
-            if t_ns == last_ns:
+            if last_ns is not None and t_ns <= last_ns:
                 continue
             if last_ns is None:
-                stepper.resume(resume or clock.Resume({}, b""), visible)
+                stepper.resume(release.resume or clock.Resume({}, b""), visible)
             last_ns = t_ns
             stepper.read_visible(visible)
             stepper.step(t_ns / NS)
@@ -161,7 +173,7 @@ class HubRunner(Runner):
 
     def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0):
         super().__init__(deployment, name, boot, parent)
-        self._desk = OperatorDesk(self._session)
+        self._desk = OperatorDesk(self._session, self._stepper.buffers.drop)
 
     def _live_step(self) -> None:
         self._desk.publish(self._live_t())

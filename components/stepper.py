@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 
 from surefoot.bus.codec import check, encode
 from surefoot.bus.message import Message
@@ -121,7 +122,7 @@ class Stepper:
         self.health.life, self.health.reason = Life.FAILED, f"{type(error).__name__}: {error}"
         self.tell(self.health.t, now=True)
 
-    def _kept(self, key: str) -> list[bytes]:
+    def _kept(self, key: str) -> Sequence[bytes]:
         """The last messages of a topic, from who keeps them."""
         return self._session.ask(f"{clock.KEPT}/{key}")
 

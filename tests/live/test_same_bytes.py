@@ -3,38 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
+from live_bytes import KEYS, first_difference, local_bytes
 
-from surefoot.bus.codec import decode, encode
+from surefoot.bus.codec import decode
 from surefoot.bus.messages import LegStatus
 from surefoot.bus.topics import PROCESSES, TOPICS
-from surefoot.components.lockstep import Lockstep
 
-KEYS = [key for key in TOPICS if not key.startswith("status/")]
 UNTIL_S = 2.9  # plans a stride, shifts its base, lifts a foot off, touches down and begins to probe
-
-
-def local_bytes(deployment, until_s):
-    stack = Lockstep(deployment)
-    heard = {key: [] for key in KEYS}
-    stack.listen(lambda key, message: heard[key].append(encode(message, volatile=False)) if key in heard else None)
-    stack.command("forward")
-    stack.run(until_s)
-    return heard
-
-
-def first_difference(heard, expected):
-    """Where the bytes that were heard differ from those of one process, whoever published them; "" nowhere."""
-    for key, want in expected.items():
-        kind = TOPICS[key].message
-        newest = {}
-        for message in (decode(kind, payload) for payload in heard[key]):
-            newest[message.seq] = message  # half a step of a process that was restarted within it is repeated
-        for index, payload in enumerate(want):
-            if index not in newest:
-                return f"{key}: message {index} of {len(want)} is missing"
-            if encode(replace(newest[index], boot=0), volatile=False) != payload:
-                return f"{key} differs first at message {index} of {len(want)}"
-    return ""
 
 
 def test_over_the_bus_and_in_one_process_give_the_same_bytes(stack):
