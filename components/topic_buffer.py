@@ -108,12 +108,26 @@ class TopicBuffers:
                 if message is not None and self._in_sequence(key, topic, message):
                     inbox.deliver(key, message)
 
+    @property
+    def had(self) -> dict[str, tuple[int, int]]:
+        """Of each topic the boot of the last message that was handed over, and the sequence number of the next."""
+        return {key: (topic.boot, topic.next) for key, topic in self._topics.items()}
+
+    def take_over(self, had: dict[str, tuple[int, int]]) -> None:
+        """Read on from where another reader stood; what has arrived before that is nothing new."""
+        for key, (boot, following) in had.items():
+            topic = self._topics[key]
+            topic.boot, topic.next, topic.first = boot, following, following
+
     def _in_sequence(self, key: str, topic: _Topic, message: Message) -> bool:
         """Whether a message follows the last one; a restarted writer, or a long row of misfits, begins anew."""
+        if message.boot == topic.boot and message.seq < topic.first:
+            return False
         ahead = message.seq - topic.next
         follows = message.boot > topic.boot or (message.boot == topic.boot and ahead >= 0)
         if follows or topic.misfits >= _MISFITS:
             topic.boot, topic.next, topic.misfits = message.boot, message.seq + 1, 0
+            topic.first = 0
             return True
         topic.misfits += 1
         self._drop(f"{key}: message {message.seq} is out of place, next is {topic.next}: a second publisher?")
