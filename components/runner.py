@@ -73,14 +73,14 @@ class Runner:
         In simulated time there is nothing to let go of: time stands still, and a process that takes this one's
         place goes on where it stood.
         """
+        if self._monotonic:
+            self._relief.expect()
         try:
             if not self._monotonic:
                 self._follow_simulated_time()
             elif self._process.rate_hz:
-                self._relief.expect()
                 self._follow_timer()
             else:
-                self._relief.expect()
                 self._follow_trigger()
         except Exception as error:
             self._stepper.fail(error)

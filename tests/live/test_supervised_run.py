@@ -65,7 +65,7 @@ def test_no_process_is_left_behind(supervised, how):
 
 
 def test_in_real_time_a_successor_takes_over_without_a_trace(supervised):
-    """Nobody can tell the two apart but by the process id; on a busy machine one may come too late and try again."""
+    """Only the process id tells the two apart; one that comes too late on a busy machine tries again."""
     live = supervised("run.clock=monotonic", "mpc.profile=light", 'run.command=""')
     live.pids()
     live.wait(lambda: "fsm" in live.status and live.status["fsm"].life == "RUN")
