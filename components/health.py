@@ -27,6 +27,7 @@ class Health:
         note: in words what is to be known of the process's start; mostly empty.
         overruns: deadlines missed.
         t: run's time of the last status [s].
+        boot: of the process's messages.
     """
 
     def __init__(
@@ -35,7 +36,7 @@ class Health:
         self.life, self.reason, self.lost, self.note = Life.INIT, "", "", ""
         self.overruns = self.steps = 0
         self.t = 0.0
-        self._component, self._session, self._buffers, self._boot = component, session, buffers, boot
+        self._component, self._session, self._buffers, self.boot = component, session, buffers, boot
         self._nominal_hz = nominal_hz(process)
         self._recent: deque[float] = deque(maxlen=2000)
         self._told, self._told_steps = time.monotonic(), 0
@@ -61,7 +62,7 @@ class Health:
             t=t,
             valid=True,
             seq=self._seq,
-            boot=self._boot,
+            boot=self.boot,
             process=self._component.name,
             life=self.life.value,
             reason=self._words(),

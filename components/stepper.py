@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from math import inf
 
-from surefoot.bus.codec import check, encode
+from surefoot.bus.codec import check, decode, encode
 from surefoot.bus.message import Message
 from surefoot.bus.session import Session
 from surefoot.bus.topics import TOPICS, Process
@@ -13,6 +14,7 @@ from surefoot.components import clock_messages as clock
 from surefoot.components.component import Component, Inbox, Life, Outbox
 from surefoot.components.health import Health
 from surefoot.components.memory import ForeignMemory
+from surefoot.components.relief import Place
 from surefoot.components.topic_buffer import TopicBuffers
 
 _INPUT_TIMEOUT_S = 10.0
@@ -50,6 +52,7 @@ class Stepper:
         self._outgoing: list[tuple[str, Message]] = []
         self._lossless = {key: simulated or not TOPICS[key].rate_hz for key in component.outputs}
         self._active = False
+        self._t = 0.0
 
     def connect(self) -> None:
         """Begin to listen to the inputs."""
@@ -77,7 +80,7 @@ class Stepper:
 
     def step(self, t: float) -> None:
         """Activate or step at time `t` [s] on what was read."""
-        begun = time.perf_counter()
+        begun, self._t = time.perf_counter(), t
         component, health = self.component, self.health
         if not self._active:
             self._active = component.activate(t, self._inbox)
@@ -111,6 +114,53 @@ class Stepper:
     def snapshot(self) -> bytes:
         """What the component remembers after its last step; empty while it is not active."""
         return clock.pack_snapshot(self.component.snapshot()) if self._active else b""
+
+    def place(self) -> Place:
+        """Where this process stands after its last step."""
+        latest = {key: self._inbox.latest(key) for key in self.component.inputs}
+        return Place(
+            t=self._t,
+            boot=self.health.boot,
+            sent=self.outbox.sent,
+            had=self.buffers.had,
+            latest={key: encode(message) for key, message in latest.items() if message is not None},
+            snapshot=self.snapshot(),
+        )
+
+    def rehearse(self, place: Place) -> None:
+        """See that this process can take over from a place; its component is as before.
+
+        Raises:
+            ForeignMemory: it cannot: what stands there is of other code.
+        """
+        blank = clock.pack_snapshot(self.component.snapshot())
+        if place.snapshot:
+            self.component.restore(clock.unpack_snapshot(place.snapshot))
+        self.component.restore(clock.unpack_snapshot(blank))
+
+    def take_over(self, place: Place, t: float) -> float:
+        """Go on at time `t` [s] from a place that another process has left.
+
+        As long as nobody finds its predecessor's messages stale, no reader can tell the two apart. With an older
+        memory, or none, this process begins anew.
+
+        Returns:
+            How long it must keep silent first, for everybody to notice that its predecessor is gone [s].
+        """
+        for key, payload in place.latest.items():
+            self._inbox.deliver(key, decode(TOPICS[key].message, payload))
+        self._inbox.clear_new()
+        self.buffers.take_over(place.had)
+        age = t - place.t
+        limit = min((TOPICS[key].stale_after_s or inf for key in self.component.outputs), default=inf)
+        if place.snapshot and age <= limit:
+            self.component.restore(clock.unpack_snapshot(place.snapshot))
+            self.outbox.continue_from(place.sent, place.boot)
+            self.health.boot, self._active = place.boot, True
+            return 0.0
+        if place.snapshot:
+            self.health.note = f"began anew: its memory was {age:.3f} s old, limit {limit:g} s"
+        return limit if limit < inf else 0.0
 
     def tell(self, t: float, now: bool = False) -> None:
         """Publish the health if it is time to, or `now`."""

@@ -129,9 +129,22 @@ class TopicBuffers:
                 if message is not None and self._in_sequence(key, topic, message, payload):
                     inbox.deliver(key, message)
 
+    @property
+    def had(self) -> dict[str, tuple[int, int]]:
+        """Of each topic the boot of the last message that was handed over, and the sequence number of the next."""
+        return {key: (topic.boot, topic.next) for key, topic in self._topics.items()}
+
+    def take_over(self, had: dict[str, tuple[int, int]]) -> None:
+        """Read on from where another reader stood; what has arrived before that is nothing new."""
+        for key, (boot, following) in had.items():
+            topic = self._topics[key]
+            topic.boot, topic.next, topic.first = boot, following, following
+
     def _in_sequence(self, key: str, topic: _Topic, message: Message, payload: bytes) -> bool:
         """Whether a message follows the last one; a restarted writer, or a long row of misfits, begins anew."""
         known = topic.is_of_writer(message, payload)
+        if known and message.boot == topic.boot and message.seq < topic.first:
+            return False
         ahead = message.seq - topic.next
         follows = known and (message.boot > topic.boot or (message.boot == topic.boot and ahead >= 0))
         if not follows and topic.misfits >= _MISFITS and (known or message.t - topic.t > _SILENT_S):
@@ -139,6 +152,7 @@ class TopicBuffers:
             follows = True
         if follows:
             topic.boot, topic.next, topic.misfits, topic.t = message.boot, message.seq + 1, 0, message.t
+            topic.first = 0
             return True
         topic.misfits += 1
         self._drop_misfit(key, topic, message, known)

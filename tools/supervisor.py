@@ -27,8 +27,11 @@ MAX_CRASHES = 3
 """In simulation a process that ends by itself is started again as often as this."""
 
 HOLDS_ROBOT = ("estimator", "wbc", "fsm")
-"""On the monotonic clock these are restarted only while the robot is damped: they keep no memory of what they do.
+"""On the monotonic clock these are restarted only while the robot rests: a few milliseconds pass without them.
 The others may be at any time: the whole-body controller holds the base meanwhile."""
+
+RESTS = ("DAMP", "STAND", "STOPPED")
+"""States in which nothing moves."""
 
 _KILL_AFTER_S = 3.0
 _LOOK_S = 0.1
@@ -58,6 +61,7 @@ class Supervisor:
         self._session: Session | None = None
         self._newest: dict[str, Callable[[], bytes | None]] = {}
         self._requests: list[str] = []
+        self._successors: dict[str, subprocess.Popen] = {}
 
     def run(self, until: Callable[[Picture], str], each: Callable[[Picture], None] = lambda picture: None) -> str:
         """Start everything; until `until(picture)` gives a reason to end, which is returned.
@@ -95,28 +99,36 @@ class Supervisor:
     def stop(self) -> None:
         """End every process in order, by force those that do not; a second Ctrl-C does not break it off."""
         with _deaf():
+            for successor in self._successors.values():
+                _end(successor)
             for name in _STOP_ORDER:
-                self._end(self.picture.processes[name])
+                _end(self.picture.processes[name].popen)
             if self._session is not None:
                 self._session.close()
                 self._session = None
 
     def restart(self, name: str) -> None:
-        """Restart one process; what was done, or why not, is noted in the picture."""
+        """Restart one process; what was done, or why not, is noted in the picture.
+
+        On the monotonic clock its successor is started first and takes its place when it is ready.
+        """
         if name not in PROCESSES:
             self.note(f"cannot restart {name!r}: there are {', '.join(PROCESSES)}")
         elif name == "io":
             self.note("cannot restart io: it holds the robot and the bus; stop the run instead")
-        elif name in HOLDS_ROBOT and not self._simulated and self._state != "DAMP":
+        elif self._simulated:
+            self._start_anew(name)
+            self.note(f"{name} restarted on request")
+        elif name in self._successors:
+            self.note(f"{name} is being restarted already")
+        elif name in HOLDS_ROBOT and self._state not in RESTS:
             self.note(
-                f"cannot restart {name} in state {self._state or 'unknown'}: in real time nothing waits for it, "
-                "and it begins without memory of what the robot does; `surefoot command sit` first, or end the run"
+                f"cannot restart {name} in state {self._state or 'unknown'}: in real time nothing waits for it; "
+                "`surefoot command stop` or sit first"
             )
         else:
-            watched = self.picture.processes[name]
-            self._end(watched)
-            self._start_again(watched)
-            self.note(f"{name} restarted on request")
+            boot = self.picture.processes[name].restarts + 1
+            self._successors[name] = self._launch(name, boot, "--relieve")
 
     @property
     def _state(self) -> str:
@@ -135,31 +147,43 @@ class Supervisor:
 
     def _start(self, name: str) -> None:
         watched = self.picture.processes[name]
+        watched.popen, watched.status = self._launch(name, watched.restarts), None
+
+    def _launch(self, name: str, boot: int, *words: str) -> subprocess.Popen:
         settings = [word for override in self._overrides for word in ("--set", override)]
         command = [sys.executable, "-P", "-m", "surefoot.tools.cli", "child", str(self._config), name, *settings]
-        command += ["--boot", str(watched.restarts), "--parent", str(os.getpid())]
+        command += ["--boot", str(boot), "--parent", str(os.getpid()), *words]
         with self._log_of(name).open("ab") as log:
             # A session of its own: Ctrl-C reaches the supervisor alone, which ends all in order.
-            watched.popen = subprocess.Popen(
+            return subprocess.Popen(
                 command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, start_new_session=True
             )
-        watched.status = None
 
     def _start_again(self, watched: Watched) -> None:
         watched.restarts += 1
         self._start(watched.name)
 
-    @staticmethod
-    def _end(watched: Watched) -> None:
-        popen = watched.popen
-        if popen is None or popen.poll() is not None:
-            return
-        popen.terminate()
-        try:
-            popen.wait(_KILL_AFTER_S)
-        except subprocess.TimeoutExpired:
-            popen.kill()
-            popen.wait()
+    def _start_anew(self, name: str) -> None:
+        """End a process, then start it again."""
+        watched = self.picture.processes[name]
+        _end(watched.popen)
+        self._start_again(watched)
+
+    def _follow_successors(self) -> None:
+        """See which have taken the place of their predecessors, and which have failed to."""
+        for name, successor in list(self._successors.items()):
+            watched = self.picture.processes[name]
+            if watched.exit_code == 0:
+                watched.popen, watched.restarts = successor, watched.restarts + 1
+                self.note(f"{name} restarted on request")
+            elif (code := successor.poll()) is None:
+                continue
+            elif name in HOLDS_ROBOT and self._state != "DAMP":
+                self.note(f"{name} goes on as it was: its successor failed; {self._obituary(name, code)}")
+            else:
+                self._start_anew(name)
+                self.note(f"{name} restarted on request, without its memory; {self._obituary(name, code)}")
+            del self._successors[name]
 
     def _reconcile(self) -> str:
         """Obey requests; start again what ended; a reason to end the run, or ""."""
@@ -169,6 +193,7 @@ class Supervisor:
                 self.restart(name)
             elif verb == "stop":
                 return "stopped by command"
+        self._follow_successors()
         for watched in self.picture.processes.values():
             code = watched.exit_code
             if code is None:
@@ -258,6 +283,18 @@ class Supervisor:
     def _on_command(self, key: str, payload: bytes) -> None:
         with suppress(MessageError):
             self.picture.note_command(decode(OperatorCommand, payload).command)
+
+
+def _end(popen: subprocess.Popen | None) -> None:
+    """End a process, by force if it does not."""
+    if popen is None or popen.poll() is not None:
+        return
+    popen.terminate()
+    try:
+        popen.wait(_KILL_AFTER_S)
+    except subprocess.TimeoutExpired:
+        popen.kill()
+        popen.wait()
 
 
 @contextmanager

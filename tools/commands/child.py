@@ -15,6 +15,9 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     parser.add_argument("--boot", type=int, default=0, help="how often this process has been restarted")
     parser.add_argument("--parent", type=int, default=0, help="process id that must live on; 0 the caller's")
+    parser.add_argument(
+        "--relieve", action="store_true", help="take over from the running process (monotonic clock only)"
+    )
     parser.set_defaults(run=_run)
 
 
@@ -28,7 +31,7 @@ def _run(call: argparse.Namespace) -> int:
     if call.name not in PROCESSES:
         raise CallError(f"no process {call.name!r}; there are {', '.join(PROCESSES)}")
     if call.name != "io":
-        return Runner(deployment, call.name, call.boot, call.parent).run()
+        return Runner(deployment, call.name, call.boot, call.parent, call.relieve).run()
     if deployment.run.clock == "simulated":
         return ClockMaster(deployment, call.boot, call.parent).run()
     return HubRunner(deployment, "io", call.boot, call.parent).run()

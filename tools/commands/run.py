@@ -17,8 +17,9 @@ right, forward, stop) from another one; with --plain, or without a terminal, tha
 
 With the simulated clock time waits for every process: the run may be slower than real time, and
 `surefoot restart NAME` goes on exactly where the process stood. With --set run.clock=monotonic it keeps real
-time; a machine that cannot solve the MPC fast enough says so and runs its light profile, and estimator, wbc and
-fsm are restarted only while the robot is damped.
+time; a machine that cannot solve the MPC fast enough says so and runs its light profile. A process that is
+restarted is relieved by another that is ready: estimator, wbc and fsm while the robot rests, the others at any
+time.
 
 exit code: 0 goal reached, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
 """
