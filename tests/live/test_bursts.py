@@ -1,15 +1,16 @@
 """A second publisher on every key of the bus, plausible or mad: reported by key and reason, without any effect."""
 
 import re
+import time
 from dataclasses import replace
 
 import msgpack
 import numpy as np
 from live_bytes import KEYS, assert_same_bytes
 
-from surefoot.bus.codec import encode
+from surefoot.bus.codec import decode, encode
 from surefoot.bus.message import specs
-from surefoot.bus.messages import JointCommand, StateEstimate
+from surefoot.bus.messages import JointCommand, SimTruth, StateEstimate
 from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components import clock_messages as clock
 from surefoot.components.registry import component_class
@@ -93,6 +94,30 @@ def test_a_burst_on_every_topic_leaves_every_byte_as_it_was(stack):
     reported(live, "io", f"{clock.REQUEST}: .* is no command")
     live.go_on(0.1)
     assert_same_bytes(live)
+
+
+def test_in_real_time_no_second_publisher_moves_the_robot(stack):
+    """It lies, damped: whatever another says for the whole-body controller, no motor gets a torque."""
+    live = stack(("run.clock=monotonic", "mpc.profile=light", f"run.epoch_s={time.monotonic()!r}"))
+    live.wait(lambda: len(live.status) == len(PROCESSES) and live.t() > 4.0)
+    begun = len(live.heard["sim/truth"])
+    for group in groups():
+        for key in group:
+            for payload in burst(key, live):
+                live.session.put(key, payload)
+    push = replace(live.last("joint/command"), tau=np.full(12, 30.0), kp=np.full(12, 100.0))
+    for seq in range(push.seq, push.seq + 200):
+        live.session.put("joint/command", encode(replace(push, seq=seq, t=live.t())))
+    reported(live, "io", "joint/command: .*")
+    for payload in (*MAD[1:], b"\xff\xfe"):
+        live.session.put(clock.REQUEST, payload)
+    reported(live, "io", f"{clock.REQUEST}: .* is no command")
+    live.go_on(0.5)
+    assert all(child.poll() is None for child in live.children.values())
+    with live.lock:
+        truths = [decode(SimTruth, payload) for payload in live.heard["sim/truth"][begun:]]
+    assert max(np.abs(truth.tau).max() for truth in truths) < 5.0
+    assert live.last("fsm/reference").state == "DAMP"
 
 
 def forged_releases(true):

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from surefoot.bus.messages import HardwareState, JointCommand
+from surefoot.bus.codec import decode
+from surefoot.bus.messages import HardwareState, JointCommand, SimTruth
 from surefoot.bus.topics import PROCESSES
 from surefoot.components.robot_model.rotation import matrix_of
 from surefoot.tools.faults.case import Case, Result
@@ -124,7 +125,7 @@ class Drill:
             if case.phase == "standing":
                 begun = run.t
                 run.wait(lambda: run.t > begun + 1.0)
-            t, mark, name = run.t, run.mark(), case.process
+            t, mark, name, truths = run.t, run.mark(), case.process, len(run.heard["sim/truth"])
             if case.fault == "pause":
                 run.signal(name, signal.SIGSTOP)
                 time.sleep(PAUSE_S)
@@ -136,7 +137,7 @@ class Drill:
             end = time.monotonic() + _SETTLE_S
             while time.monotonic() < end and not run.over:
                 time.sleep(0.05)
-            result = self._judge_monotonic(run, case, t, mark)
+            result = self._judge_monotonic(run, case, t, truths, mark)
         except RunOver as error:
             result = Result(case, False, f"not reached: {error}", "")
         finally:
@@ -144,9 +145,12 @@ class Drill:
         self._say(f"{case.phase}: {case.fault} {case.process}: {result.outcome}")
         return result
 
-    def _judge_monotonic(self, run: ObservedRun, case: Case, t: float, mark: tuple[int, int]) -> Result:
+    def _judge_monotonic(
+        self, run: ObservedRun, case: Case, t: float, since: int, mark: tuple[int, int]
+    ) -> Result:
         """Damped, ended or up: no command that was too old was ever applied, and the robot did not fall over."""
-        states, truths = run.since("hw/state", t), run.since("sim/truth", t)
+        states = run.since("hw/state", t)
+        truths = [decode(SimTruth, payload) for payload in run.heard["sim/truth"][since:]]
         commands = run.since("joint/command", t)
         told = run.ending() if run.over else run.words(case.process, mark) or run.words("io: ", mark)
         damped = [state.t for state in states if state.damping]
