@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -82,16 +83,16 @@ def unpack_release(payload: bytes) -> Release:
         MessageError: it is no release.
     """
     t_ns, visible, resume, writers = _parts(payload, 4, RELEASE)
-    _require(type(t_ns) is int, RELEASE, f"time {t_ns!r:.40}")
-    _require(_are_counts(visible), RELEASE, f"counts {visible!r:.80}")
+    _require(type(t_ns) is int, RELEASE, "time", t_ns)
+    _require(_are_counts(visible), RELEASE, "counts", visible)
     if writers is not None:
-        _require(_are_lists_of_bytes(writers), RELEASE, f"writers {writers!r:.80}")
+        _require(_are_lists_of_bytes(writers), RELEASE, "writers", writers)
     if resume is None:
         return Release(t_ns, visible, None, writers)
-    _require(isinstance(resume, list) and len(resume) == 2, RELEASE, f"resume {resume!r:.80}")
+    _require(isinstance(resume, list) and len(resume) == 2, RELEASE, "resume", resume)
     had, snapshot = resume
-    _require(_are_counts(had), RELEASE, f"counts {had!r:.80}")
-    _require(isinstance(snapshot, bytes), RELEASE, f"snapshot {snapshot!r:.40}")
+    _require(_are_counts(had), RELEASE, "counts", had)
+    _require(isinstance(snapshot, bytes), RELEASE, "snapshot", snapshot)
     return Release(t_ns, visible, Resume(had, snapshot), writers)
 
 
@@ -107,7 +108,7 @@ def unpack_hello(payload: bytes) -> int:
         MessageError: it is no hello.
     """
     boot = _unpack(payload, HELLO)
-    _require(type(boot) is int and boot >= 0, HELLO, f"{boot!r:.40}")
+    _require(type(boot) is int and boot >= 0, HELLO, "boot", boot)
     return boot
 
 
@@ -123,9 +124,9 @@ def unpack_done(payload: bytes) -> Done:
         MessageError: it is no done token.
     """
     t_ns, sent, snapshot = _parts(payload, 3, DONE)
-    _require(type(t_ns) is int, DONE, f"time {t_ns!r:.40}")
-    _require(_are_lists_of_bytes(sent), DONE, f"messages {sent!r:.80}")
-    _require(isinstance(snapshot, bytes), DONE, f"snapshot {snapshot!r:.40}")
+    _require(type(t_ns) is int, DONE, "time", t_ns)
+    _require(_are_lists_of_bytes(sent), DONE, "messages", sent)
+    _require(isinstance(snapshot, bytes), DONE, "snapshot", snapshot)
     return Done(t_ns, sent, snapshot)
 
 
@@ -141,7 +142,7 @@ def unpack_snapshot(payload: bytes) -> dict[str, Any]:
 
 def _parts(payload: bytes, count: int, what: str) -> list[Any]:
     parts = _unpack(payload, what)
-    _require(isinstance(parts, list) and len(parts) == count, what, f"{type(parts).__name__}")
+    _require(isinstance(parts, list) and len(parts) == count, what, "whole", parts)
     return parts
 
 
@@ -165,9 +166,9 @@ def _are_lists_of_bytes(value: Any) -> bool:
     )
 
 
-def _require(holds: bool, what: str, found: str) -> None:
+def _require(holds: bool, key: str, what: str, found: Any) -> None:
     if not holds:
-        raise MessageError(f"{what}: {found} is not what the clock's messages hold")
+        raise MessageError(f"{key}: {what} {reprlib.repr(found):.80} is not what the clock's messages hold")
 
 
 def _pack_array(value: Any) -> Any:
