@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from threading import Condition
 
 from surefoot.bus.codec import decode
@@ -146,10 +146,7 @@ class TopicBuffers:
         """
         for key, topic in self._topics.items():
             seen = had.get(key, 0)
-            for payload in kept.get(key, ()):
-                message = self._decode(key, payload)
-                if message is not None and message.seq >= seen - 1:
-                    topic.early[message.seq] = message, hash(payload)
+            self._place(key, topic, kept.get(key, ()), seen - 1)
             oldest = min(topic.early, default=visible.get(key, 0))
             topic.jump(max(seen - 1, min(oldest, visible.get(key, 0)), 0))
             self._take(key, topic, seen, inbox)
@@ -176,8 +173,7 @@ class TopicBuffers:
             while topic.next < wanted:
                 missing = topic.next
                 if not self._wait(topic, _ON_ITS_WAY_S):
-                    topic.waiting.extend(ask(key))
-                    self._sort(key, topic)
+                    self._place(key, topic, ask(key), topic.next)
                     self._take(key, topic, wanted, inbox)
                 if topic.next == missing and not self._wait(topic, timeout_s):
                     lost = f"{key}: message {topic.next} of {wanted} did not arrive in {timeout_s:g} s"
@@ -198,6 +194,15 @@ class TopicBuffers:
     def _wait(self, topic: _Topic, timeout_s: float) -> bool:
         with self._arrived:
             return self._arrived.wait_for(lambda: bool(topic.waiting), timeout_s)
+
+    def _place(self, key: str, topic: _Topic, kept: Iterable[bytes], least: int) -> None:
+        """Put what was kept for this reader in its place, from a sequence number on."""
+        for payload in kept:
+            message = self._decode(key, payload)
+            if message is not None and message.seq >= least:
+                there = topic.early.get(message.seq)
+                if there is None or message.boot > there[0].boot:
+                    topic.early[message.seq] = message, hash(payload)
 
     def _sort(self, key: str, topic: _Topic) -> None:
         """Decode what has arrived and put each message in its place, if that is free."""
