@@ -7,6 +7,7 @@ import queue
 import time
 from collections import deque
 from functools import partial
+from math import ceil
 from threading import Event, Lock
 
 from surefoot.bus.errors import MessageError
@@ -56,8 +57,12 @@ class ClockMaster:
         self._remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
         executors: dict[str, Executor] = {"io": _HostedExecutor(self._stepper, self), **self._remote}
         self.scheduler = Scheduler(executors, table)
+        # A process that is released again reads what was visible then: time has gone on by its budget at the most.
+        budget_s = max(process.budget_s for process in table.values())
         self._kept: dict[str, deque[bytes]] = {
-            key: deque(maxlen=KEPT) for key, topic in TOPICS.items() if topic.writer in PROCESSES
+            key: deque(maxlen=KEPT + ceil(topic.rate_hz * budget_s))
+            for key, topic in TOPICS.items()
+            if topic.writer in PROCESSES
         }
 
     def run(self) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from threading import Condition
 
 from surefoot.bus.codec import decode
@@ -181,10 +181,7 @@ class TopicBuffers:
         """
         for key, topic in self._topics.items():
             seen = had.get(key, 0)
-            for payload in self._of_io(key, kept.get(key, ())):
-                message = self._decode(key, payload)
-                if message is not None and message.seq >= seen - 1:
-                    topic.early[message.seq] = message, hash(payload)
+            self._place(key, topic, self._of_io(key, kept.get(key, ())), seen - 1)
             oldest = min(topic.early, default=visible.get(key, 0))
             topic.jump(max(seen - 1, min(oldest, visible.get(key, 0)), 0))
             self._take(key, topic, seen, inbox)
@@ -232,8 +229,11 @@ class TopicBuffers:
         """Wait for what is on its way, then ask for it; whether the next message came, whatever else arrives."""
         missing = topic.next
         for asked, patience_s in ((False, _ON_ITS_WAY_S), (True, timeout_s)):
-            for payload in self._of_io(key, ask(key)) if asked else ():
-                topic.store(payload)
+            if asked:
+                self._place(key, topic, self._of_io(key, ask(key)), topic.next)
+                self._take(key, topic, wanted, inbox)
+                if topic.next > missing:
+                    return True
             end = time.monotonic() + patience_s
             while self._wait(topic, end - time.monotonic()):
                 self._sort(key, topic)
@@ -272,6 +272,15 @@ class TopicBuffers:
         with self._arrived:
             waiting, topic.waiting = topic.waiting, {}
         return [payload for queue in waiting.values() for payload in queue]
+
+    def _place(self, key: str, topic: _Topic, kept: Iterable[bytes], least: int) -> None:
+        """Put what was kept for this reader in its place, from a sequence number on."""
+        for payload in kept:
+            message = self._decode(key, payload)
+            if message is not None and message.seq >= least:
+                there = topic.early.get(message.seq)
+                if there is None or message.boot > there[0].boot:
+                    topic.early[message.seq] = message, hash(payload)
 
     def _sort(self, key: str, topic: _Topic) -> None:
         """Decode what has arrived and put each message in its place, if that is free."""

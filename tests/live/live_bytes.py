@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from surefoot.bus.codec import decode, encode
 from surefoot.bus.topics import TOPICS
 from surefoot.components.lockstep import Lockstep
@@ -20,18 +22,26 @@ def local_bytes(deployment, until_s, command="forward"):
 
 
 def first_difference(heard, expected):
-    """Where the bytes that were heard differ from those of one process, whoever published them; "" nowhere."""
+    """Where the bytes that were heard first differ from those of one process, but for `boot`; "" nowhere."""
+    found = []
     for key, want in expected.items():
         kind = TOPICS[key].message
         newest = {}
         for message in (decode(kind, payload) for payload in heard[key]):
             newest[message.seq] = message  # half a step of a process that was restarted within it is repeated
         for index, payload in enumerate(want):
-            if index not in newest:
-                return f"{key}: message {index} of {len(want)} is missing"
-            if encode(replace(newest[index], boot=0), volatile=False) != payload:
-                return f"{key} differs first at message {index} of {len(want)}"
-    return ""
+            wanted, got = decode(kind, payload), newest.get(index)
+            if got is None:
+                found.append((wanted.t, f"{key}: message {index} of {len(want)} is missing"))
+            elif encode(replace(got, boot=0), volatile=False) != payload:
+                names = [
+                    name for name in vars(got) if not np.array_equal(getattr(got, name), getattr(wanted, name))
+                ]
+                found.append((wanted.t, f"{key} differs at {wanted.t:.3f} s, message {index}, in {names}"))
+            else:
+                continue
+            break
+    return "; ".join(words for _, words in sorted(found)[:3])
 
 
 def assert_same_bytes(live):
