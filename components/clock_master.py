@@ -41,7 +41,7 @@ class ClockMaster:
 
     def __init__(self, deployment: Deployment, boot: int = 0, parent: int = 0):
         self._end = ProcessEnd(parent)
-        self.session = Session(deployment.run.namespace, hub=True)
+        self.session = Session(deployment.run.namespace, hub=True, network=deployment.network)
         self._desk = OperatorDesk(self.session)
         table = processes(deployment.mpc.profile)
         self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)

@@ -42,7 +42,7 @@ class Runner:
         self._deployment, self._name = deployment, name
         self._process = processes(deployment.mpc.profile)[name]
         self._monotonic = deployment.run.clock == "monotonic"
-        self._session = Session(deployment.run.namespace, hub=self.hub)
+        self._session = Session(deployment.run.namespace, hub=self.hub, network=deployment.network)
         component = component_class(name)(deployment)
         self._stepper = Stepper(component, self._session, self._process, boot, simulated=not self._monotonic)
         self._relief, self._relieves, self._relieved = Relief(self._session, name), relieves, False

@@ -19,6 +19,7 @@ from surefoot.tools.commands import (  # noqa: E402
     child,
     command,
     eval,
+    keys,
     press,
     reproduce,
     restart,
@@ -28,7 +29,7 @@ from surefoot.tools.commands import (  # noqa: E402
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
-COMMANDS = (run, command, status, restart, child, topics, eval, press, reproduce, bench)
+COMMANDS = (run, command, status, restart, child, topics, keys, eval, press, reproduce, bench)
 """In the order of the help."""
 
 

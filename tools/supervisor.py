@@ -12,16 +12,17 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from surefoot.bus.codec import decode
+from surefoot.bus.endpoints import check_keys
 from surefoot.bus.errors import BusError, MessageError
 from surefoot.bus.messages import FsmEvent, MotionReference, OperatorCommand, ProcessStatus, StateEstimate
+from surefoot.bus.service_keys import SUPERVISOR_REQUEST
 from surefoot.bus.session import Session, refuse_second_hub
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
 from surefoot.config.deployment import Deployment
 from surefoot.tools.picture import Picture, SupportMargin, Watched
 
-REQUEST = "supervisor/request"
-"""Key on which `surefoot restart NAME` reaches the supervisor: "restart NAME", or "stop"."""
+REQUEST = SUPERVISOR_REQUEST
 
 MAX_CRASHES = 3
 """In simulation a process that ends by itself is started again as often as this."""
@@ -69,8 +70,9 @@ class Supervisor:
         Whatever happens, no process is left behind.
 
         Raises:
-            BusError: io did not come up, or another run has this namespace.
+            BusError: io did not come up, another run has this namespace, or this machine's keys cannot be used.
         """
+        check_keys(self._deployment.network)
         refuse_second_hub(self._deployment.run.namespace)
         self._log_dir.mkdir(parents=True, exist_ok=True)
         try:
@@ -226,7 +228,7 @@ class Supervisor:
         io, end = self.picture.processes["io"], time.monotonic() + _HUB_S
         while True:
             try:
-                return Session(self._deployment.run.namespace, connect_ms=1000)
+                return Session(self._deployment.run.namespace, connect_ms=1000, network=self._deployment.network)
             except BusError:
                 code = io.exit_code
                 if code is not None:

@@ -1,0 +1,17 @@
+"""Keys outside the topic table: simulated time, what is kept for late readers, and what people ask."""
+
+RELEASE, DONE, HELLO = "clock/release", "clock/done", "clock/hello"
+"""Key prefixes of simulated time; the process's name follows. HELLO: the process is ready, or ready again after a
+restart."""
+
+KEPT = "kept"
+"""Key prefix; a topic's key follows. The process of io answers with the last messages of that topic."""
+
+LOG = "log"
+"""Key prefix; a process's name follows. What it has read and published, for a recorder, which may also ask for it."""
+
+REQUEST = "operator/request"
+"""People's commands to the process of io, which dates and numbers them."""
+
+SUPERVISOR_REQUEST = "supervisor/request"
+"""What people ask of the supervisor: "restart NAME" or "stop"."""
