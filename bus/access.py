@@ -28,7 +28,8 @@ def spoken_over_network(network: Network) -> list[str]:
     """The keys on which the operator's identity may publish."""
     away = network.components_away
     topics = [topic.key for topic in TOPICS.values() if topic.writer in away]
-    prefixes = service_keys.DONE, service_keys.HELLO, service_keys.LOG
+    relief = service_keys.RELIEF_ASK, service_keys.RELIEF_ANSWER
+    prefixes = service_keys.DONE, service_keys.HELLO, service_keys.LOG, *relief
     services = [f"{prefix}/{name}" for name in away for prefix in prefixes]
     return [*topics, *services, service_keys.REQUEST, service_keys.SUPERVISOR_REQUEST]
 

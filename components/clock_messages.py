@@ -15,6 +15,9 @@ from surefoot.bus.service_keys import KEPT as KEPT
 from surefoot.bus.service_keys import RELEASE as RELEASE
 from surefoot.bus.service_keys import REQUEST as REQUEST
 
+NEW, STILL_THERE = b"", b"still there"
+"""What a HELLO says: a process without memory of this run, or one that waits for a release."""
+
 STOP_NS = -1
 """Release time that means: end."""
 

@@ -23,10 +23,11 @@ from surefoot.tools import keys as keys_module
 NAMESPACE = f"access-{os.getpid()}"
 ROBOTS = ("io", "estimator", "wbc")
 ITS_OWN = [topic.key for topic in TOPICS.values() if topic.writer in ("mpc", "fsm", "trajopt", "elevation_map")]
+OF_A_PROCESS = ("clock/done", "clock/hello", "log", "relief/ask", "relief/answer")
 NOT_ITS_OWN = [
     *(topic.key for topic in TOPICS.values() if topic.key not in ITS_OWN),
     *(f"clock/release/{name}" for name in ("wbc", "mpc", "fsm")),
-    *(f"{prefix}/{name}" for prefix in ("clock/done", "clock/hello", "log") for name in ROBOTS),
+    *(f"{prefix}/{name}" for prefix in OF_A_PROCESS for name in ROBOTS),
     "anything",
 ]
 PATIENCE_S = 30.0
@@ -92,7 +93,7 @@ def test_the_operator_hears_the_robot_and_speaks_for_its_own_processes(hub, lapt
     robot, operator = Ear(hub), Ear(laptop)
     for key in ("hw/state", "sim/truth", "clock/release/mpc"):
         operator.wait(key, b"robot", lambda key=key: hub.put(key, b"robot"))
-    for key in (*ITS_OWN, "operator/request", "supervisor/request", "clock/done/mpc", "clock/hello/fsm"):
+    for key in (*ITS_OWN, "operator/request", "supervisor/request", *(f"{prefix}/mpc" for prefix in OF_A_PROCESS)):
         robot.wait(key, b"laptop", lambda key=key: laptop.put(key, b"laptop"))
 
 
