@@ -219,7 +219,7 @@ class HubRunner(Runner):
 
     def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0):
         super().__init__(deployment, name, boot, parent)
-        self._desk = OperatorDesk(self._session)
+        self._desk = OperatorDesk(self._session, lossless=False)
         serve_time(self._session, deployment)
 
     def _live_step(self) -> None:

@@ -19,6 +19,7 @@ from surefoot.bus.session import Session
 from surefoot.bus.topics import TOPICS
 from surefoot.config.network import Network
 from surefoot.tools import keys as keys_module
+from surefoot.tools.cli import main
 
 NAMESPACE = f"access-{os.getpid()}"
 ROBOTS = ("io", "estimator", "wbc")
@@ -77,11 +78,11 @@ def intruder():
         session.close()
 
 
-def signed_by(keys, folder, name, usage, addresses=()):
+def signed_by(keys, folder, name, usage, addresses=(), days=1):
     """Another identity of the same authority."""
     root = x509.load_pem_x509_certificate((keys / "authority" / "authority.pem").read_bytes())
     root_key = load_pem_private_key((keys / "authority" / "authority.key").read_bytes(), None)
-    key, certificate = keys_module._make_identity(name, addresses, usage, root_key, root, 1)
+    key, certificate = keys_module._make_identity(name, addresses, usage, root_key, root, days)
     folder.mkdir()
     (folder / f"{name}.pem").write_bytes(certificate.public_bytes(Encoding.PEM))
     (folder / f"{name}.key").write_bytes(keys_module._private(key))
@@ -121,7 +122,9 @@ def test_the_operator_answers_for_its_own_processes_only(hub, laptop):
     assert laptop.ask("kept/joint/command") == [b"robot"]
 
 
-@pytest.mark.parametrize("who", ["no certificate", "no tls", "foreign authority", "the robot's certificate"])
+@pytest.mark.parametrize(
+    "who", ["no certificate", "no tls", "foreign authority", "expired", "the robot's certificate"]
+)
 def test_without_the_operators_certificate_nobody_gets_in(intruder, network, hub, keys, who, tmp_path):
     if who == "no certificate":
         given = {"folder": keys / "operator"}
@@ -132,6 +135,10 @@ def test_without_the_operators_certificate_nobody_gets_in(intruder, network, hub
         foreign = tmp_path / "foreign" / "operator"
         (foreign / "authority.pem").write_bytes((keys / "operator" / "authority.pem").read_bytes())
         given = {"folder": foreign, "name": "operator"}
+    elif who == "expired":
+        usage = ExtendedKeyUsageOID.CLIENT_AUTH
+        given = {"folder": signed_by(keys, tmp_path / "old", "operator", usage, days=0), "name": "operator"}
+        time.sleep(1.1)  # a certificate's dates are in whole seconds
     else:
         given = {"folder": keys / "robot", "name": "robot"}  # it serves; it is no key to come in with
     with pytest.raises(zenoh.ZError):
@@ -187,6 +194,22 @@ def test_the_default_is_one_machine_closed_to_others(network, hub):
     listening = [each for each in before if each[3] == "0A"]
     assert ("tcp", "0100007F", port, "0A") in listening  # 127.0.0.1, and in this process:
     assert not any(protocol.startswith("udp") for protocol, *_ in before), "multicast or scouting"
+
+
+def test_a_command_comes_in_by_the_deployment_and_the_operators_keys(network, hub, tmp_path, capsys):
+    config, port = tmp_path / "two.toml", network.listen.rsplit(":", 1)[1]
+    config.write_text(
+        f'[terrain]\nkind = "flat"\n[run]\nnamespace = "{NAMESPACE}"\n[network]\nlisten = "{network.listen}"\n'
+        f'address = "127.0.0.1"\nkeys_dir = "{network.keys_dir}"\n'
+    )
+    robot = Ear(hub)
+    assert main(["command", "stand", "--connect", str(config)]) == 0
+    robot.wait("operator/request", b"stand")
+    assert main(["restart", "mpc", "--connect", str(config)]) == 0
+    robot.wait("supervisor/request", b"restart mpc")
+    assert f"told tls/127.0.0.1:{port}: stand" in capsys.readouterr().out
+    assert main(["status", "--connect", str(config)]) == 1  # connected; nobody speaks
+    assert f"connected to tls/127.0.0.1:{port}" in capsys.readouterr().out
 
 
 def test_without_another_host_the_operator_may_only_ask():
