@@ -2,11 +2,10 @@
 
 import sys
 import time
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_same_bytes import KEYS, first_difference, local_bytes
+from test_same_bytes import local_bytes
 
 from surefoot.bus.codec import decode, encode
 from surefoot.bus.topics import TOPICS
@@ -17,22 +16,21 @@ HOSTS = {"robot": ("io", "estimator", "wbc"), "laptop": ("mpc", "fsm", "trajopt"
 
 
 def same_bytes(live, until_s):
-    """Whether a run published what one process does.
+    """Whether a run published what one process does, as far as it was heard.
 
-    Heard on the robot: what its own processes say is all there, and follows from all that the laptop's said. Of
-    that some may have been lost on its way to this listener, which unlike the processes does not ask again.
+    When a session is closed or opened a listener may miss a message, also of the same machine; unlike the
+    processes this one does not ask again. A reader that had missed one would have changed all that follows.
     """
     expected = local_bytes(live.deployment, until_s)
     with live.lock:
         heard = {key: list(payloads) for key, payloads in live.heard.items()}
-    robots = [key for key in KEYS if TOPICS[key].writer in (*HOSTS["robot"], "operator")]
-    assert {"hw/state", "state/estimate", "joint/command", "sim/truth"} <= set(robots)
-    assert first_difference(heard, {key: expected[key] for key in robots}) == ""
-    for key in set(KEYS) - set(robots):
+    for key, want in expected.items():
+        seen = set()
         for message in (decode(TOPICS[key].message, payload) for payload in heard[key]):
-            if message.seq < len(expected[key]):
-                assert encode(replace(message, boot=0), volatile=False) == expected[key][message.seq], key
-    assert len(heard["fsm/reference"]) > 0.9 * len(expected["fsm/reference"])
+            if message.seq < len(want):
+                seen.add(message.seq)
+                assert encode(message, volatile=False) == want[message.seq], f"{key}, message {message.seq}"
+        assert len(want) < 20 or (len(seen) > 0.9 * len(want) and max(seen) > len(want) - 5), key
 
 
 def test_simulated_time_waits_for_a_link_that_is_down_and_goes_on_with_the_same_bytes(two_machines):
@@ -85,7 +83,6 @@ def test_in_real_time_the_robot_is_safe_without_the_link_and_goes_on_with_it(two
     live.link.up()
     policies = len(live.heard["mpc/policy"])
     wait(lambda: len(live.heard["mpc/policy"]) > policies + 20)
-    print(live.reason("elevation_map"))
     assert lowered(live), "a robot that lies on the ground is not to rise by itself"
 
     for command, state in (("sit", "DAMP"), ("stand", "STAND")):
