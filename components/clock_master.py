@@ -48,7 +48,7 @@ class ClockMaster:
 
     def __init__(self, deployment: Deployment, boot: int = 0, parent: int = 0):
         self._end = ProcessEnd(parent)
-        self.session = Session(deployment.run.namespace, hub=True)
+        self.session = Session(deployment.run.namespace, hub=True, network=deployment.network)
         table = processes(deployment.mpc.profile)
         self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)
         self.refuse = self._stepper.buffers.drop
@@ -68,6 +68,7 @@ class ClockMaster:
     def run(self) -> int:
         """Until told to stop or the parent is gone; returns the exit code."""
         self._stepper.connect()
+        self._stepper.look = self.look
         for key, kept in self._kept.items():
             self.session.serve(f"{clock.KEPT}/{key}", partial(list, kept))
         gc.collect()
@@ -143,6 +144,7 @@ class RemoteExecutor:
         self._resume = clock.Resume({}, b"")
         self._new_there = False
         self._told: dict[str, list[bytes]] | None = None
+        self._answered_ns = -1
         self._done: queue.SimpleQueue[tuple[clock.Done, dict[str, int]]] = queue.SimpleQueue()
         self.known: set[bytes] = set()
         self._boot = -1
@@ -196,30 +198,32 @@ class RemoteExecutor:
         except MessageError as error:
             self._master.refuse(str(error))
             return
-        others = ", ".join(sorted(done.sent.keys() - self._outputs))
+        others, pending = ", ".join(sorted(done.sent.keys() - self._outputs)), self._pending
         if payload.writer not in self.known:
             self._master.refuse(f"{clock.DONE}: a second {self._name} answers for {done.t_ns / NS:.3f} s")
         elif others:
             self._master.refuse(f"{clock.DONE}: {others:.80}: no output of {self._name}")
-        else:
+        elif pending is not None and done.t_ns == pending[0] and done.t_ns != self._answered_ns:
+            # What is said again, because a release was sent again, is passed over.
+            self._answered_ns = done.t_ns
             self._done.put((done, self._master.keep(done.sent)))
 
     def _on_hello(self, payload: Marked) -> None:
-        """The process is up, or up again: what it has not answered is asked once more."""
+        """The process is up, or up again, or has heard nothing for a while: what it owes is asked once more."""
         writer = payload.writer
         try:
-            boot = clock.unpack_hello(payload)
+            hello = clock.unpack_hello(payload)
         except MessageError as error:
             self._master.refuse(str(error))
             return
         gone = time.monotonic() - self._waits_since > _GONE_S
-        if not (boot > self._boot or writer in self.known or gone):
+        if not (hello.boot > self._boot or writer in self.known or gone):
             self._master.refuse(f"{clock.HELLO}: a second {self._name}, while the first one answers")
             return
         with self._lock:
-            self._boot = boot
+            self._boot, self._told = hello.boot, None
+            self._new_there |= hello.new
             self.known.add(writer)
-            self._new_there, self._told = True, None
             self._master.note_writers()
             if self._pending is not None:
                 self._send(*self._pending)

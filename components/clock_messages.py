@@ -11,15 +11,11 @@ import msgpack
 import numpy as np
 
 from surefoot.bus.errors import MessageError
-
-RELEASE, DONE, HELLO = "clock/release", "clock/done", "clock/hello"
-"""Key prefixes; the process's name follows. HELLO: the process is ready, or ready again after a restart."""
-
-KEPT = "kept"
-"""Key prefix; a topic's key follows. The process of io answers with the last messages of that topic."""
-
-REQUEST = "operator/request"
-"""Key on which people's commands reach the process of io, which dates and numbers them."""
+from surefoot.bus.service_keys import DONE as DONE
+from surefoot.bus.service_keys import HELLO as HELLO
+from surefoot.bus.service_keys import KEPT as KEPT
+from surefoot.bus.service_keys import RELEASE as RELEASE
+from surefoot.bus.service_keys import REQUEST as REQUEST
 
 STOP_NS = -1
 """Release time that means: end."""
@@ -53,6 +49,19 @@ class Release:
     visible: dict[str, int]
     resume: Resume | None = None
     writers: dict[str, list[bytes]] | None = None
+
+
+@dataclass(frozen=True)
+class Hello:
+    """A process is there.
+
+    Attributes:
+        boot: counts its restarts.
+        new: it has no memory of this run; otherwise it waits for a release.
+    """
+
+    boot: int
+    new: bool = True
 
 
 @dataclass(frozen=True)
@@ -96,20 +105,21 @@ def unpack_release(payload: bytes) -> Release:
     return Release(t_ns, visible, Resume(had, snapshot), writers)
 
 
-def pack_hello(boot: int) -> bytes:
-    """A process says that it is ready; `boot` counts its restarts."""
-    return msgpack.packb(boot)
+def pack_hello(hello: Hello) -> bytes:
+    """Bytes of a greeting."""
+    return msgpack.packb([hello.boot, hello.new])
 
 
-def unpack_hello(payload: bytes) -> int:
+def unpack_hello(payload: bytes) -> Hello:
     """What `pack_hello` packed.
 
     Raises:
-        MessageError: it is no hello.
+        MessageError: it is no greeting.
     """
-    boot = _unpack(payload, HELLO)
+    boot, new = _parts(payload, 2, HELLO)
     _require(type(boot) is int and boot >= 0, HELLO, "boot", boot)
-    return boot
+    _require(type(new) is bool, HELLO, "new", new)
+    return Hello(boot, new)
 
 
 def pack_done(done: Done) -> bytes:

@@ -21,11 +21,16 @@ class OperatorDesk:
     What is no word is refused here; which words are commands is the state machine's business, which answers.
     """
 
-    def __init__(self, session: Session, refuse: Callable[[str], None]):
-        """`refuse` is told, by key, of each request that is no word."""
-        self._session = session
+    def __init__(self, session: Session, refuse: Callable[[str], None], lossless: bool = True):
+        """For the process that holds the bus.
+
+        Args:
+            session: the bus.
+            refuse: told, by key, of each request that is no word.
+            lossless: wait for a reader that is late; in real time io waits for nobody.
+        """
+        self._session, self._refuse, self._lossless = session, refuse, lossless
         self._requests: deque[bytes] = deque(maxlen=KEPT)
-        self._refuse = refuse
         self._kept: deque[bytes] = deque(maxlen=KEPT)
         self._sent = 0
         session.subscribe(clock.REQUEST, lambda key, payload: self._requests.append(payload))
@@ -42,7 +47,7 @@ class OperatorDesk:
                 continue
             payload = encode(OperatorCommand(t=t, seq=self._sent, valid=True, command=command))
             self._kept.append(payload)
-            self._session.put(_TOPIC, payload)
+            self._session.put(_TOPIC, payload, self._lossless)
             self._sent += 1
             count += 1
         return count

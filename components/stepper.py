@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import inf
 
 from surefoot.bus.codec import check, decode, encode
@@ -18,6 +18,7 @@ from surefoot.components.relief import Place
 from surefoot.components.topic_buffer import TopicBuffers
 
 _INPUT_TIMEOUT_S = 10.0
+_ASK_AGAIN_S = 0.3
 
 
 class Stepper:
@@ -28,6 +29,7 @@ class Stepper:
         buffers: what has arrived of its inputs.
         outbox: numbers its messages.
         health: what is told of it.
+        look: called while it waits for a message; raises when there is no reason to wait on.
     """
 
     def __init__(
@@ -47,6 +49,7 @@ class Stepper:
         self.buffers = TopicBuffers(component.inputs, trigger, component.complete)
         self.outbox = Outbox(component.outputs, self._send, boot)
         self.health = Health(component, session, self.buffers, process, boot)
+        self.look: Callable[[], None] = lambda: None
         self._session = session
         self._inbox = Inbox(component.inputs)
         self._outgoing: list[tuple[str, Message]] = []
@@ -60,7 +63,7 @@ class Stepper:
 
     def resume(self, resume: clock.Resume, visible: dict[str, int]) -> None:
         """Take the place of a process that is gone, where its last finished step left it."""
-        kept = {key: self._kept(key) for key in self.component.inputs if visible.get(key)}
+        kept = {key: self._await_kept(key) for key in self.component.inputs if visible.get(key)}
         self.buffers.resume(resume.had, visible, kept, self._inbox)
         self.outbox.continue_from(visible)
         if resume.snapshot:
@@ -172,9 +175,21 @@ class Stepper:
         self.health.life, self.health.reason = Life.FAILED, f"{type(error).__name__}: {error}"
         self.tell(self.health.t, now=True)
 
-    def _kept(self, key: str) -> Sequence[bytes]:
-        """The last messages of a topic, from who keeps them."""
-        return self._session.ask(f"{clock.KEPT}/{key}")
+    def _kept(self, key: str) -> Sequence[bytes] | None:
+        """The last messages of a topic, from who keeps them; None when nobody answers."""
+        kept = self._session.ask(f"{clock.KEPT}/{key}") or None
+        self.health.lost = (
+            "" if kept else f"{key}: a message is missing, and io does not answer: is the link down?"
+        )
+        self.tell(self.health.t)
+        self.look()
+        return kept
+
+    def _await_kept(self, key: str) -> Sequence[bytes]:
+        """The same; waits until there is an answer."""
+        while (kept := self._kept(key)) is None:
+            time.sleep(_ASK_AGAIN_S)
+        return kept
 
     def _send(self, key: str, message: Message) -> None:
         self._outgoing.append((key, check(message)))

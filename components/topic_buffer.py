@@ -24,6 +24,10 @@ _MISFITS = 8  # so many messages out of sequence in a row are a new sequence
 _SILENT_S = 1.0  # a writer that has been silent for so long may be another than before
 
 
+Ask = Callable[[str], Sequence[bytes] | None]
+"""The last messages of a topic, from who keeps them; None when nobody can be asked now."""
+
+
 def _nobody(key: str) -> list[bytes]:
     """Nobody keeps any message of a topic."""
     return []
@@ -187,17 +191,11 @@ class TopicBuffers:
             self._take(key, topic, seen, inbox)
         inbox.clear_new()
 
-    def deliver_visible(
-        self,
-        visible: dict[str, int],
-        inbox: Inbox,
-        timeout_s: float,
-        ask: Callable[[str], Sequence[bytes]] = _nobody,
-    ) -> str:
+    def deliver_visible(self, visible: dict[str, int], inbox: Inbox, timeout_s: float, ask: Ask = _nobody) -> str:
         """Hand over exactly the messages with sequence numbers below the counts in `visible`.
 
-        Waits for those that are still on their way, and asks for one that was sent before its reader was there;
-        one that does not come is skipped.
+        Waits for those that are still on their way, and asks for one that was sent before its reader was there,
+        or while a link was down; one that nobody has kept is skipped.
 
         Returns:
             What did not come in time, in words; empty when all is there.
@@ -224,13 +222,15 @@ class TopicBuffers:
         wanted: int,
         inbox: Inbox,
         timeout_s: float,
-        ask: Callable[[str], Sequence[bytes]],
+        ask: Ask,
     ) -> bool:
-        """Wait for what is on its way, then ask for it; whether the next message came, whatever else arrives."""
+        """Wait for what is on its way, then ask for it; false if the next message is lost, whatever else comes."""
         missing = topic.next
         for asked, patience_s in ((False, _ON_ITS_WAY_S), (True, timeout_s)):
             if asked:
-                self._place(key, topic, self._of_io(key, ask(key)), topic.next)
+                if (kept := ask(key)) is None:
+                    return True  # nothing is lost yet
+                self._place(key, topic, self._of_io(key, kept), topic.next)
                 self._take(key, topic, wanted, inbox)
                 if topic.next > missing:
                     return True

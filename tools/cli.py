@@ -20,6 +20,7 @@ from surefoot.tools.commands import (  # noqa: E402
     command,
     eval,
     faults,
+    keys,
     press,
     reproduce,
     restart,
@@ -29,7 +30,7 @@ from surefoot.tools.commands import (  # noqa: E402
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
-COMMANDS = (run, command, status, restart, child, topics, eval, press, reproduce, faults, bench)
+COMMANDS = (run, command, status, restart, child, topics, keys, eval, press, reproduce, faults, bench)
 """In the order of the help."""
 
 

@@ -46,7 +46,8 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
     if note:
         supervisor.note(note)
     interactive = console.is_terminal and not plain
-    title = f"Surefoot, {config.name}, {deployment.run.clock} clock, mpc {deployment.mpc.profile}"
+    where = f" on {deployment.network.here}" if len(deployment.network.hosts) > 1 else ""
+    title = f"Surefoot, {config.name}{where}, {deployment.run.clock} clock, mpc {deployment.mpc.profile}"
     state = Verdict()
 
     def until(picture: Picture) -> str:
@@ -76,7 +77,9 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
 
 
 def _profile_is_open(deployment: Deployment, overrides: list[str]) -> bool:
-    """Only a run in real time must fit the machine, and only if nobody has said which profile it is to be."""
+    """In real time a solve must fit the MPC's machine, if nobody has said which profile it is to be."""
+    if "mpc" not in deployment.network.components_here:
+        return False
     said = any(override.startswith("mpc.profile=") for override in overrides)
     return deployment.run.clock == "monotonic" and deployment.mpc.profile == "paper" and not said
 

@@ -105,6 +105,7 @@ def process_table(picture: Picture) -> Table:
     for name, watched in picture.processes.items():
         status = watched.status
         restarts = str(watched.restarts)
+        name = f"{name}, {watched.host}" if watched.host else name
         if status is None:
             table.add_row(name, "not heard", *[""] * 6, restarts)
             continue

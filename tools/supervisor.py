@@ -12,16 +12,17 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from surefoot.bus.codec import decode
+from surefoot.bus.endpoints import check_keys
 from surefoot.bus.errors import BusError, MessageError
 from surefoot.bus.messages import FsmEvent, MotionReference, OperatorCommand, ProcessStatus, StateEstimate
+from surefoot.bus.service_keys import SUPERVISOR_REQUEST
 from surefoot.bus.session import Session, refuse_second_hub
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
 from surefoot.config.deployment import Deployment
 from surefoot.tools.picture import Picture, SupportMargin, Watched
 
-REQUEST = "supervisor/request"
-"""Key on which `surefoot restart NAME` reaches the supervisor: "restart NAME", or "stop"."""
+REQUEST = SUPERVISOR_REQUEST
 
 MAX_CRASHES = 3
 """In simulation a process that ends by itself is started again as often as this."""
@@ -46,6 +47,8 @@ class Supervisor:
     In simulation a process that ends by itself is started again, and simulated time waits for it. On the
     monotonic clock the run ends: the gate in io damps the robot as soon as commands are missing.
 
+    It starts what `network.hosts` gives this machine; the rest it only hears. The machine of io begins the run.
+
     Attributes:
         picture: what has been heard, updated while `run` goes on.
     """
@@ -58,6 +61,10 @@ class Supervisor:
         self._log_dir = Path(deployment.run.log_dir)
         self._margin = SupportMargin(deployment.load_robot())
         self.picture = Picture()
+        self._network = deployment.network
+        for name in PROCESSES:
+            if name not in self._network.components_here:
+                self.picture.processes[name].host = self._network.host_of(name)
         self._session: Session | None = None
         self._newest: dict[str, Callable[[], bytes | None]] = {}
         self._requests: list[str] = []
@@ -69,21 +76,26 @@ class Supervisor:
         Whatever happens, no process is left behind.
 
         Raises:
-            BusError: io did not come up, or another run has this namespace.
+            BusError: io did not come up or cannot be reached, another run has this namespace, or this machine's
+                keys cannot be used.
         """
-        refuse_second_hub(self._deployment.run.namespace)
+        at_hub = self._network.at_hub
+        check_keys(self._network)
+        if at_hub:
+            refuse_second_hub(self._deployment.run.namespace)
         self._log_dir.mkdir(parents=True, exist_ok=True)
         try:
-            self._start("io")
+            if at_hub:
+                self._start("io")
             self._session = self._connect()
             self._listen(self._session)
             self._await("io")
-            if self._simulated:
+            if at_hub and self._simulated:
                 self._command(self._deployment.run.command)
-            for name in PROCESSES:
+            for name in self._network.components_here:
                 if name != "io":
                     self._start(name)
-            if not self._simulated:
+            if at_hub and not self._simulated:
                 self._await("fsm")
                 self._command(self._deployment.run.command)
             while True:
@@ -114,6 +126,8 @@ class Supervisor:
         """
         if name not in PROCESSES:
             self.note(f"cannot restart {name!r}: there are {', '.join(PROCESSES)}")
+        elif host := self.picture.processes[name].host:
+            self.note(f"{name} is for the supervisor of {host} to restart")
         elif name == "io":
             self.note("cannot restart io: it holds the robot and the bus; stop the run instead")
         elif self._simulated:
@@ -199,6 +213,8 @@ class Supervisor:
             if code is None:
                 continue
             what = self._obituary(watched.name, code)
+            if code == 0 and self._simulated and not self._network.at_hub:
+                return f"the run on {self._network.hub} has ended"  # its clock has told the processes to end
             watched.crashes += 1
             if watched.name == "io" or not self._simulated:
                 return what
@@ -223,10 +239,12 @@ class Supervisor:
 
     def _connect(self) -> Session:
         """The bus, as soon as io holds it."""
+        if not self._network.at_hub:
+            return Session(self._deployment.run.namespace, connect_ms=round(1e3 * _HUB_S), network=self._network)
         io, end = self.picture.processes["io"], time.monotonic() + _HUB_S
         while True:
             try:
-                return Session(self._deployment.run.namespace, connect_ms=1000)
+                return Session(self._deployment.run.namespace, connect_ms=1000, network=self._network)
             except BusError:
                 code = io.exit_code
                 if code is not None:

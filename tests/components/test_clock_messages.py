@@ -20,7 +20,7 @@ def test_they_come_through_as_they_were():
     for release in RELEASES:
         assert clock.unpack_release(clock.pack_release(release)) == release
     assert clock.unpack_done(clock.pack_done(DONE)) == DONE
-    assert clock.unpack_hello(clock.pack_hello(3)) == 3
+    assert clock.unpack_hello(clock.pack_hello(clock.Hello(3, new=False))) == clock.Hello(3, new=False)
 
 
 @pytest.mark.parametrize(
@@ -28,7 +28,7 @@ def test_they_come_through_as_they_were():
     [
         *((clock.unpack_release, clock.RELEASE, clock.pack_release(release)) for release in RELEASES),
         (clock.unpack_done, clock.DONE, clock.pack_done(DONE)),
-        (clock.unpack_hello, clock.HELLO, clock.pack_hello(1)),
+        (clock.unpack_hello, clock.HELLO, clock.pack_hello(clock.Hello(1))),
     ],
 )
 def test_anything_else_is_refused_by_key_or_is_well_formed(unpack, key, true):
@@ -82,4 +82,4 @@ def well_formed(found):
         assert type(found.t_ns) is int and isinstance(found.snapshot, bytes)
         assert all(isinstance(payload, bytes) for payloads in found.sent.values() for payload in payloads)
     else:
-        assert type(found) is int and found >= 0
+        assert type(found.boot) is int and found.boot >= 0 and type(found.new) is bool

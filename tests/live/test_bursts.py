@@ -171,7 +171,9 @@ def test_a_burst_on_the_clock_s_own_keys_leaves_every_byte_as_it_was(stack):
             live.session.put(f"{clock.DONE}/{name}", payload)
     reported(live, "io", r"clock/done.*")
     for name in releases:
-        for payload in (clock.pack_hello(0), *(msgpack.packb(each) for each in (-1, "a", None, 1.5, [0])), *MAD):
+        hellos = (clock.pack_hello(clock.Hello(0)), clock.pack_hello(clock.Hello(0, new=False)))
+        others = (msgpack.packb(each) for each in (-1, "a", None, 1.5, [0], [0, 1], [-1, True], [0, True, 0]))
+        for payload in (*hellos, *others, *MAD):
             live.session.put(f"{clock.HELLO}/{name}", payload)
     reported(live, "io", r"clock/hello.*")
     live.go_on(0.1)

@@ -8,6 +8,8 @@ import pytest
 from surefoot.bus.messages import MotionReference
 from surefoot.bus.topics import PROCESSES
 from surefoot.config.deployment import Deployment, Run
+from surefoot.config.network import Network
+from surefoot.tools import supervisor as supervisor_module
 from surefoot.tools.supervisor import Supervisor
 
 
@@ -136,3 +138,47 @@ def test_a_stop_is_carried_through_whoever_presses_ctrl_c_again(tmp_path, monkey
     supervisor.stop()
     assert sorted(ended) == sorted(PROCESSES) and ended[-1] == "io"
     assert signal.getsignal(signal.SIGINT) == before
+
+
+HOSTS = {"robot": ("io", "estimator", "wbc", "fsm"), "laptop": ("mpc", "trajopt", "elevation_map")}
+
+
+class Bus:
+    """In place of the session."""
+
+    def __init__(self, *args, **kwargs):
+        self.said = []
+
+    def newest(self, key):
+        return lambda: None
+
+    def subscribe(self, key, receive):
+        pass
+
+    def put(self, key, payload):
+        self.said.append((key, payload))
+
+    def close(self):
+        pass
+
+
+@pytest.mark.parametrize("clock", ["simulated", "monotonic"])
+@pytest.mark.parametrize("host", ["robot", "laptop"])
+def test_each_machine_starts_its_own_processes_and_that_of_io_gives_the_command(
+    tmp_path, monkeypatch, host, clock
+):
+    network = Network(hosts=HOSTS, listen="tls/0.0.0.0:7448", address="10.0.0.1", host=host)
+    run = Run(clock=clock, log_dir=str(tmp_path), namespace="nobody", command="stand")
+    supervisor = Supervisor(tmp_path / "flat.toml", [], Deployment(run=run, network=network))
+    started, bus = [], Bus()
+    monkeypatch.setattr(supervisor_module, "check_keys", lambda network: None)
+    monkeypatch.setattr(supervisor, "_start", started.append)
+    monkeypatch.setattr(supervisor, "_connect", lambda: bus)
+    monkeypatch.setattr(supervisor, "_await", lambda name, *rest: None)
+    assert supervisor.run(lambda picture: "enough") == "enough"
+    assert started == list(HOSTS[host])
+    assert [payload for _, payload in bus.said] == ([b"stand"] if host == "robot" else [])
+    away = {name: watched.host for name, watched in supervisor.picture.processes.items() if watched.host}
+    assert away == {name: other for other in HOSTS if other != host for name in HOSTS[other]}
+    supervisor.restart(next(iter(away)))
+    assert "for the supervisor of" in supervisor.picture.notes[-1] and started == list(HOSTS[host])

@@ -21,6 +21,9 @@ time; a machine that cannot solve the MPC fast enough says so and runs its light
 restarted is relieved by another that is ready: estimator, wbc and fsm while the robot rests, the others at any
 time.
 
+With --host NAME it starts what network.hosts gives that machine, and connects to the robot's. Start the robot's
+machine and this one in any order within a minute; each part ends by itself or with Ctrl-C.
+
 exit code: 0 goal reached, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
 """
 
@@ -39,6 +42,7 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--for", dest="seconds", type=float, default=0.0, help="end after this much of the run's time"
     )
+    parser.add_argument("--host", metavar="NAME", help="this machine's name in network.hosts; default: that of io")
     parser.add_argument("--plain", action="store_true", help="lines instead of a screen")
     parser.set_defaults(run=_run)
 
@@ -46,4 +50,5 @@ def add(commands: argparse._SubParsersAction) -> None:
 def _run(call: argparse.Namespace) -> int:
     from surefoot.tools.live_run import live_run
 
-    return live_run(deployment_file(call.config), call.set, call.seconds, call.plain)
+    overrides = [*call.set, f"network.host={call.host}"] if call.host else call.set
+    return live_run(deployment_file(call.config), overrides, call.seconds, call.plain)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import argparse
 
+from surefoot.tools.commands.bus_call import add_bus_arguments, open_bus
+
 _LISTEN_S = 1.5
 
 
 def add(commands: argparse._SubParsersAction) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser("status", help="health of a running stack, once")
-    parser.add_argument("--namespace", default="surefoot")
+    add_bus_arguments(parser)
     parser.set_defaults(run=_run)
 
 
@@ -21,17 +23,16 @@ def _run(call: argparse.Namespace) -> int:
 
     from surefoot.bus.codec import decode
     from surefoot.bus.messages import ProcessStatus
-    from surefoot.bus.session import Session, socket_path
     from surefoot.tools.picture import Picture
     from surefoot.tools.status_screen import health, process_table
 
-    session = Session(call.namespace, connect_ms=2000)
+    session = open_bus(call)
     picture = Picture()
     session.subscribe("status/*", lambda key, payload: picture.note_status(decode(ProcessStatus, payload)))
     time.sleep(_LISTEN_S)
     session.close()
     console = Console()
-    console.print(f"connected to {socket_path(call.namespace)}", process_table(picture), health(picture), sep="\n")
+    console.print(f"connected to {session.where}", process_table(picture), health(picture), sep="\n")
     silent = [name for name, watched in picture.processes.items() if watched.status is None]
     if silent:
         print(f"silent for {_LISTEN_S} s: {', '.join(silent)}; are they running?")
