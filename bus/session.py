@@ -127,19 +127,21 @@ class Session:
 
         def on_query(query: zenoh.Query) -> None:
             with query:
-                for index, payload in enumerate(answer()):
-                    query.reply(f"{whole}/{index}", payload)
+                answers = answer()
+                for index, payload in enumerate(answers):
+                    query.reply(f"{whole}/{index}-{len(answers)}", payload)
 
         self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
 
     def ask(self, key: str, timeout_s: float = 2.0) -> list[bytes]:
-        """What is served under a key, in order; empty when nobody serves it."""
+        """What is served under a key, in order; empty when nobody serves it, or not all of it has come in time."""
         replies = self._session.get(f"{self._prefix}/{key}/*", timeout=timeout_s)
-        answers = {}
+        answers, count = {}, 0
         for reply in replies:
             if reply.ok is not None:
-                answers[int(str(reply.ok.key_expr).rsplit("/", 1)[1])] = reply.ok.payload.to_bytes()
-        return [answers[index] for index in sorted(answers)]
+                index, _, total = str(reply.ok.key_expr).rsplit("/", 1)[1].partition("-")
+                answers[int(index)], count = reply.ok.payload.to_bytes(), int(total)
+        return [answers[index] for index in range(count)] if len(answers) == count else []
 
     def close(self) -> None:
         """Leave the bus."""
