@@ -74,6 +74,11 @@ class Outbox:
         for key in self._seq:
             self._seq[key] = counts.get(key, 0)
 
+    @property
+    def next_seq(self) -> dict[str, int]:
+        """Number of the next message on each output."""
+        return dict(self._seq)
+
     def publish(self, key: str, message: Message) -> None:
         """Publish on one of the component's outputs.
 
@@ -93,6 +98,7 @@ class Component:
     """Base of every component. Class attributes say its name, inputs and outputs; `bus.topics` its timing.
 
     Attributes:
+        remembers: `snapshot` holds all that it carries from one step to the next.
         complete: streams of which it needs every message; of others the newest is enough on the monotonic clock.
         trouble: in words why the last step could not do its work; empty when it could. The process's status
             tells it.
@@ -101,6 +107,7 @@ class Component:
     name: ClassVar[str]
     inputs: ClassVar[tuple[str, ...]] = ()
     outputs: ClassVar[tuple[str, ...]] = ()
+    remembers: ClassVar[bool] = True
 
     complete: tuple[str, ...] = ()
     trouble: str = ""

@@ -19,7 +19,10 @@ from surefoot.tools.commands import (  # noqa: E402
     child,
     command,
     eval,
+    info,
     press,
+    record,
+    replay,
     reproduce,
     restart,
     run,
@@ -28,7 +31,7 @@ from surefoot.tools.commands import (  # noqa: E402
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
-COMMANDS = (run, command, status, restart, child, topics, eval, press, reproduce, bench)
+COMMANDS = (run, command, status, restart, child, topics, record, info, replay, eval, press, reproduce, bench)
 """In the order of the help."""
 
 
