@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from surefoot.bus.recording.step_log import CHECKPOINT, STEPS, Checkpoint, StepL
 from surefoot.bus.topics import TOPICS
 
 ENCODING, DIGEST = "msgpack", "blake2b-8"
-"""Of a channel: the messages as they were on the bus, or only a digest of each (`bus.recording.clip`)."""
+"""Of a channel: the messages as they were on the bus, or only a digest of each (in clips)."""
 
 ABOUT = "surefoot"
 """Name of the metadata record that says what was recorded."""
@@ -48,13 +48,12 @@ class RecordingWriter:
     read all the same.
     """
 
-    def __init__(self, path: Path, about: Mapping[str, str], digests: Iterable[str] = ()):
+    def __init__(self, path: Path, about: Mapping[str, str]):
         """Create the file.
 
         Args:
             path: is overwritten.
             about: what was recorded: the resolved configuration as JSON, versions.
-            digests: topics of which only digests will be written.
 
         Raises:
             OSError: the file cannot be written.
@@ -63,9 +62,8 @@ class RecordingWriter:
         self._writer = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._writer.start("surefoot", "surefoot")
         self._writer.add_metadata(ABOUT, dict(about))
-        self._channels: dict[str, int] = {}
+        self._channels: dict[tuple[str, str], int] = {}
         self._schemas: dict[type[Message], int] = {}
-        self._digests = frozenset(digests)
         self._next: dict[tuple[str, int], Batch] = {}
         self.flush()
 
@@ -79,12 +77,12 @@ class RecordingWriter:
             self.add_record(record)
         self._next[batch.process, batch.boot] = batch
 
-    def add_record(self, record: Record) -> None:
+    def add_record(self, record: Record, encoding: str = ENCODING) -> None:
         """Append one record."""
         key, t_ns, seq, payload = record
-        channel = self._channels.get(key)
+        channel = self._channels.get((key, encoding))
         if channel is None:
-            channel = self._channels[key] = self._channel(key)
+            channel = self._channels[key, encoding] = self._channel(key, encoding)
         self._writer.add_message(channel, t_ns, payload, t_ns, seq & 0xFFFFFFFF)
 
     def flush(self) -> None:
@@ -107,9 +105,8 @@ class RecordingWriter:
         """Close without an index, after an error."""
         self._file.close()
 
-    def _channel(self, key: str) -> int:
+    def _channel(self, key: str, encoding: str) -> int:
         kind = message_type(key)
         if kind not in self._schemas:
             self._schemas[kind] = self._writer.register_schema(kind.__name__, "jsonschema", json_schema(kind))
-        encoding = DIGEST if key in self._digests else ENCODING
         return self._writer.register_channel(key, encoding, self._schemas[kind])
