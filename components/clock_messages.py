@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import msgpack
@@ -27,7 +28,7 @@ class Resume:
 
     Attributes:
         had: how many messages of each topic its predecessor had read at its last finished step.
-        snapshot: of its predecessor after that step; empty if there was none, or it keeps none.
+        snapshot: of its predecessor after that step; empty if there was none, or it was not active yet.
     """
 
     had: dict[str, int]
@@ -41,7 +42,7 @@ class Done:
     Attributes:
         t_ns: the release it answers [ns].
         counts: how many messages it published on each topic.
-        snapshot: the component's state after it, packed; empty if it keeps none.
+        snapshot: the component's memory after it, packed; empty if it is not active yet.
     """
 
     t_ns: int
@@ -71,8 +72,8 @@ def unpack_done(payload: bytes) -> Done:
 
 
 def pack_snapshot(state: dict[str, Any]) -> bytes:
-    """Bytes of a snapshot: numbers, strings, bytes, lists and arrays by name; empty for an empty one."""
-    return msgpack.packb(state, default=_pack_array) if state else b""
+    """Bytes of a snapshot: numbers, strings, bytes, lists and arrays by name."""
+    return msgpack.packb(state, default=_pack_array)
 
 
 def unpack_snapshot(payload: bytes) -> dict[str, Any]:
@@ -82,12 +83,20 @@ def unpack_snapshot(payload: bytes) -> dict[str, Any]:
 
 def _pack_array(value: Any) -> Any:
     if isinstance(value, np.ndarray):
-        return msgpack.ExtType(0, msgpack.packb([value.dtype.str, value.shape, value.tobytes()]))
+        return msgpack.ExtType(0, _head(value.dtype, value.shape) + value.tobytes())
     if isinstance(value, np.generic):
         return value.item()
     raise TypeError(f"a snapshot holds numbers, strings, bytes, lists and arrays, not {type(value).__name__}")
 
 
+@lru_cache(maxsize=1024)
+def _head(dtype: np.dtype, shape: tuple[int, ...]) -> bytes:
+    """What precedes an array's bytes: the same few come step after step."""
+    return msgpack.packb([dtype.str, shape])
+
+
 def _unpack_array(code: int, payload: bytes) -> np.ndarray:
-    dtype, shape, raw = msgpack.unpackb(payload)
-    return np.frombuffer(raw, dtype).reshape(shape).copy()
+    unpacker = msgpack.Unpacker()
+    unpacker.feed(payload)
+    dtype, shape = unpacker.unpack()
+    return np.frombuffer(payload, dtype, offset=unpacker.tell()).reshape(shape).copy()

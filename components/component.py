@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 
 from surefoot.bus.message import Message
 from surefoot.bus.topics import TOPICS, topic
+from surefoot.components.memory import Memory
 from surefoot.config.deployment import Deployment
 
 
@@ -98,7 +99,8 @@ class Component:
     """Base of every component. Class attributes say its name, inputs and outputs; `bus.topics` its timing.
 
     Attributes:
-        remembers: `snapshot` holds all that it carries from one step to the next.
+        memory: what it carries from one step to the next.
+        remembers: that is all there is to it; a robot, or its simulator, cannot be put back.
         complete: streams of which it needs every message; of others the newest is enough on the monotonic clock.
         trouble: in words why the last step could not do its work; empty when it could. The process's status
             tells it.
@@ -107,6 +109,8 @@ class Component:
     name: ClassVar[str]
     inputs: ClassVar[tuple[str, ...]] = ()
     outputs: ClassVar[tuple[str, ...]] = ()
+
+    memory: ClassVar[Memory] = Memory()
     remembers: ClassVar[bool] = True
 
     complete: tuple[str, ...] = ()
@@ -139,8 +143,17 @@ class Component:
         return True
 
     def snapshot(self) -> dict[str, Any]:
-        """State that a restart or a replay must have: numbers, strings, bytes, lists and arrays by name."""
-        return {}
+        """Its memory as numbers, strings, bytes, lists and arrays by name, for a restart or a replay.
+
+        With it, and with the same inputs, another object of the class publishes the same bytes from here on.
+        Arrays are the component's own: to be packed or copied before its next step.
+        """
+        return self.memory.of(self)
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take over what `snapshot` gave."""
+        """Take over what `snapshot` gave, after `warm_up`.
+
+        Raises:
+            ForeignMemory: it is not of this component, or of other code; nothing has been taken over.
+        """
+        self.memory.restore(self, state)

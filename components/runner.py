@@ -113,8 +113,7 @@ class Runner:
             last_ns = t_ns
             stepper.read_visible(visible)
             stepper.step(t_ns / NS)
-            snapshot = clock.pack_snapshot(stepper.component.snapshot())
-            done = clock.Done(t_ns, stepper.publish(), snapshot)
+            done = clock.Done(t_ns, stepper.publish(), stepper.snapshot())
             self._session.put(f"{clock.DONE}/{name}", clock.pack_done(done))
 
     def _follow_timer(self) -> None:

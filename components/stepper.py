@@ -125,6 +125,10 @@ class Stepper:
             self._log()
         return counts
 
+    def snapshot(self) -> bytes:
+        """What the component remembers after its last step; empty while it is not active."""
+        return clock.pack_snapshot(self.component.snapshot()) if self._active else b""
+
     def tell(self, t: float, now: bool = False) -> None:
         """Publish the health if it is time to, or `now`."""
         self.health.tell(t, self._inbox, now)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.memory import Memory
 from surefoot.components.robot_model.rotation import exp_rotation, skew
 from surefoot.config.estimator import Estimator
 from surefoot.config.robot import GRAVITY
@@ -36,6 +37,8 @@ class ContactAidedFilter:
         known: (4,) feet whose position is a state of its own, not the base's.
     """
 
+    memory = Memory("p_WB", "v_WB_W", "R_WB", "p_WF", "bias_gyro", "bias_acc", "omega_B", "P", "known")
+
     def __init__(self, settings: Estimator):
         self._settings = settings
         self.p_WB, self.v_WB_W = np.zeros(3), np.zeros(3)
@@ -44,13 +47,17 @@ class ContactAidedFilter:
         self.bias_gyro, self.bias_acc = np.zeros(3), np.zeros(3)
         self.omega_B = np.zeros(3)
         self.P = np.zeros((SIZE, SIZE))
-        self._diagonal = self.P.reshape(-1)[:: SIZE + 1]
         self._H = np.zeros((12, SIZE))
         self._H[:, _P] = -np.tile(_EYE3, (4, 1))
         self._H[:, _FEET : _FEET + 12] = np.eye(12)
         self.known = np.zeros(4, bool)
         self._F = np.eye(SIZE)
         self._gravity_W = np.array([0.0, 0.0, -GRAVITY])
+
+    @property
+    def _diagonal(self) -> np.ndarray:
+        """(27,) the variances, a view."""
+        return self.P.reshape(-1)[:: SIZE + 1]
 
     def start(self, acc_B: np.ndarray, p_BF: np.ndarray, foot_height_m: float) -> None:
         """Begin at rest: tilt from gravity, yaw zero, feet on average at `foot_height_m`.

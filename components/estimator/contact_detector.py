@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.memory import Memory
 from surefoot.config.estimator import Estimator
 
 
@@ -16,6 +17,8 @@ class ContactDetector:
         hits: (4,) successive looks that contradict them.
         cycle: calls of `update` so far.
     """
+
+    memory = Memory("contact", "hits", "cycle")
 
     def __init__(self, settings: Estimator):
         self._settings = settings

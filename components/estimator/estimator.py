@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from surefoot.components.estimator.contact_aided_filter import ContactAidedFilte
 from surefoot.components.estimator.contact_detector import ContactDetector
 from surefoot.components.estimator.contact_force import ContactForce
 from surefoot.components.estimator.surface_normal import SurfaceNormal
+from surefoot.components.memory import Memory
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotation import exp_rotation, quaternion_of, skew
 from surefoot.config.deployment import Deployment
@@ -20,12 +21,6 @@ from surefoot.config.robot import GRAVITY
 
 _MAX_GAP_S = 0.02
 _REST_TOLERANCE = 1.0  # [m/s^2]
-_MEMORY = {
-    "filter": ("p_WB", "v_WB_W", "R_WB", "p_WF", "bias_gyro", "bias_acc", "omega_B", "P", "known"),
-    "detector": ("contact", "hits", "cycle"),
-    "normal": ("slope", "normal_W"),
-}
-"""What each part carries from one cycle to the next: the snapshot."""
 
 
 class Estimator(Component):
@@ -39,6 +34,14 @@ class Estimator(Component):
     name: ClassVar[str] = "estimator"
     inputs: ClassVar[tuple[str, ...]] = ("hw/state", "fsm/reference")
     outputs: ClassVar[tuple[str, ...]] = ("state/estimate",)
+    memory: ClassVar[Memory] = Memory(
+        "_force_B",
+        "_contact_WF",
+        "_last_t",
+        _filter=ContactAidedFilter,
+        _detector=ContactDetector,
+        _normal=SurfaceNormal,
+    )
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
@@ -91,26 +94,6 @@ class Estimator(Component):
         self._filter.update(p_BF, J_B, stance, rate, dt, self._rolling(q, dq))
         healthy = self._guard(state, p_BF)
         self._publish(state, p_BF, J_B, dq, contact, force_W, healthy, outbox)
-
-    def snapshot(self) -> dict[str, Any]:
-        mine = {"contact_WF": self._contact_WF, "force_B": self._force_B, "t": self._last_t}
-        return mine | {
-            f"{part}.{name}": getattr(getattr(self, f"_{part}"), name)
-            for part, names in _MEMORY.items()
-            for name in names
-        }
-
-    def restore(self, state: dict[str, Any]) -> None:
-        self._contact_WF, self._force_B = np.array(state["contact_WF"]), np.array(state["force_B"])
-        self._last_t = float(state["t"])
-        for part, names in _MEMORY.items():
-            for name in names:
-                owner = getattr(self, f"_{part}")
-                kept = getattr(owner, name)
-                if isinstance(kept, np.ndarray):
-                    kept[:] = state[f"{part}.{name}"]  # in place: the filter holds views into its arrays
-                else:
-                    setattr(owner, name, state[f"{part}.{name}"])
 
     def _begin(self, state: HardwareState, p_BF: np.ndarray) -> None:
         self._filter.start(state.acc_B, p_BF, self._foot_radius)

@@ -6,6 +6,7 @@ from math import sqrt, tan
 
 import numpy as np
 
+from surefoot.components.memory import Memory
 from surefoot.config.estimator import Estimator
 
 
@@ -16,6 +17,8 @@ class SurfaceNormal:
         slope: (2,) of the plane along x and y, low-passed.
         normal_W: (3,) unit normal, upwards.
     """
+
+    memory = Memory("slope", "normal_W")
 
     def __init__(self, settings: Estimator):
         self._gain = settings.normal_filter

@@ -7,6 +7,7 @@ import numpy as np
 from surefoot.bus.messages import MotionReference
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.support_triangle import SupportTriangle
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 
 _ROUNDING_S = 1e-9
@@ -14,6 +15,8 @@ _ROUNDING_S = 1e-9
 
 class Lasting:
     """Tells when something has been true for long enough without a break."""
+
+    memory = Memory("_since")
 
     def __init__(self, seconds: float):
         self._seconds = seconds
@@ -34,6 +37,8 @@ class Lasting:
 
 class Balance:
     """Judges the centre of mass against the triangle of the feet other than the one that is moved."""
+
+    memory = Memory(_at_rest=Lasting, _lost=Lasting)
 
     def __init__(self, settings: Fsm):
         self._settings = settings

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 
 
@@ -14,6 +15,8 @@ class Certificates:
         held_n: (4,) largest normal force each foothold has really borne [N].
         displaced_m: (4,) how far the foot had moved under it from where it touched down [m].
     """
+
+    memory = Memory("held_n", "displaced_m")
 
     def __init__(self, settings: Fsm):
         self._settings = settings

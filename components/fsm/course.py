@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from surefoot.components.fsm.foothold_planner import FootholdPlanner, plane_height
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 
 AROUND_POINTS = 4
@@ -18,6 +19,8 @@ class Course:
         heading: yaw the robot keeps [rad].
         direction: (2,) unit vector of the walk in the world.
     """
+
+    memory = Memory("heading", "direction", "_origin_W", "_place", "_first", _put_off=set)
 
     def __init__(self, planner: FootholdPlanner, settings: Fsm):
         self._planner, self._settings = planner, settings

@@ -13,6 +13,7 @@ from surefoot.bus.messages import ControlMode, FsmEvent, MotionReference, StateE
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.probing_cycle import ProbingCycle
+from surefoot.components.memory import Memory
 from surefoot.components.robot_model import build_model
 from surefoot.components.robot_model.rotation import matrix_of, rpy_of
 from surefoot.config.deployment import Deployment
@@ -43,6 +44,17 @@ class Fsm(Component):
     name: ClassVar[str] = "fsm"
     inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "operator/command", "trajopt/plan", "foothold/regions")
     outputs: ClassVar[tuple[str, ...]] = ("fsm/reference", "fsm/event", "trajopt/request", "foothold/request")
+    memory: ClassVar[Memory] = Memory(
+        "_reason",
+        "_joint_from",
+        "_joint_to",
+        "_joint_t0",
+        "_joint_t1",
+        "_wish",
+        "_t",
+        _posture=Posture,
+        _cycle=ProbingCycle,
+    )
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)

@@ -13,6 +13,7 @@ from surefoot.components.fsm.motion import LAND_AHEAD_S, Motion, Region
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.gait.swing_spline import SwingSpline
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 
 _STOPPED_SHARE = 0.5
@@ -21,6 +22,8 @@ _STOPPED_SHARE = 0.5
 
 class LegSwing:
     """Swings of the leg whose turn it is: to a foothold, to a point around it, and back."""
+
+    memory = Memory("_touch_z")
 
     def __init__(
         self,

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
 from surefoot.bus.messages import FootholdRegions
 from surefoot.components.fsm.motion import Region
+from surefoot.components.memory import Memory
 
 
 @dataclass
@@ -28,6 +30,21 @@ class LegTurn:
         halt: why the robot is to stop once the leg is back, or "".
         no_way_back: why the leg in the air has no ground to go back to, or "".
     """
+
+    memory: ClassVar[Memory] = Memory(
+        "leg",
+        "candidate",
+        "around",
+        "targets_W",
+        "candidates_W",
+        "failed_W",
+        "foothold_W",
+        "support_pose",
+        "envelope_W",
+        "halt",
+        "no_way_back",
+        answer=FootholdRegions,
+    )
 
     leg: int = -1
     candidate: int = 0

@@ -8,6 +8,7 @@ import numpy as np
 
 from surefoot.bus.messages import ControlMode, LegStatus, MotionReference
 from surefoot.components.fsm.observation import Observation
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 
 LIFT_AHEAD_S = 0.10
@@ -40,6 +41,8 @@ class Motion:
     Attributes:
         reference: the message for the MPC, the whole-body controller and the estimator.
     """
+
+    memory = Memory("_ground", reference=MotionReference)
 
     def __init__(self, settings: Fsm):
         self._settings = settings

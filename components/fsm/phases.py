@@ -19,6 +19,7 @@ from surefoot.components.fsm.probing import Probing
 from surefoot.components.fsm.retreat import Retreat
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import Robot
 
@@ -32,6 +33,8 @@ class Phases:
         probing: PROBE, PROBE_AROUND.
         retreat: LEG_UP, RETURN_SAFE.
     """
+
+    memory = Memory(planning=Planning, probing=Probing, retreat=Retreat, _swing=LegSwing)
 
     def __init__(
         self,
@@ -47,7 +50,7 @@ class Phases:
         event: Callable[..., None],
     ):
         """`event(kind, reason, p_WF, **figures)` reports what happens to the leg whose turn it is."""
-        swing = LegSwing(settings, planner, course, watch, motion, turn, event)
+        self._swing = swing = LegSwing(settings, planner, course, watch, motion, turn, event)
         self.planning = Planning(robot, settings, planner, course, watch, certificates, motion, turn, event)
         self.step = LegStep(settings, course, balance, swing, motion, turn, event)
         self.probing = Probing(robot, settings, course, watch, certificates, swing, motion, turn, event)

@@ -17,6 +17,7 @@ from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.questions import Questions
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import LEGS, Robot
 
@@ -29,6 +30,8 @@ class Planning:
     Attributes:
         questions: what it asks of the map and of the trajectory optimisation.
     """
+
+    memory = Memory(questions=Questions)
 
     def __init__(
         self,

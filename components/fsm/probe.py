@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 
 _HELD_WINDOW_S = 0.06  # a force is held if its mean over the end of its dwell is
@@ -40,6 +41,8 @@ class Probe:
         told: how many forces are over.
         held_n: the largest normal force held so far [N].
     """
+
+    memory = Memory("asked_W", "told", "held_n", "_t0", "_pressed")
 
     def __init__(self, settings: Fsm):
         self._settings = settings

@@ -18,12 +18,15 @@ from surefoot.components.fsm.probe import Held, Probe, peak_n
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
 from surefoot.components.fsm.static_limit import static_limit
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import GRAVITY, LEGS, Robot
 
 
 class Probing:
     """The test of the foothold that the leg whose turn it is has reached, and of the points around it."""
+
+    memory = Memory("_repeated", "_eased", "_moved_before", "_borne_n", "_borne_m", _press=Probe)
 
     def __init__(
         self,

@@ -21,6 +21,7 @@ from surefoot.components.fsm.phases import Phases
 from surefoot.components.fsm.questions import Questions
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import LEGS, Robot
 
@@ -38,13 +39,28 @@ class ProbingCycle:
         finished: every foot has advanced by the goal.
     """
 
+    memory = Memory(
+        "reason",
+        "finished",
+        "_entered",
+        state=State,
+        motion=Motion,
+        _turn=LegTurn,
+        _watch=StanceWatch,
+        _certificates=Certificates,
+        _course=Course,
+        _balance=Balance,
+        _phases=Phases,
+    )
+
     def __init__(self, robot: Robot, settings: Fsm, report: Callable[..., None]):
         """`report(kind, reason, **figures)` is called for every event."""
         self._settings, self._report = settings, report
         self.motion, self._turn = motion, turn = Motion(settings), LegTurn()
         self._planner = planner = FootholdPlanner(robot, settings)
         self._watch, self._certificates = watch, certificates = StanceWatch(), Certificates(settings)
-        course, balance, event = Course(planner, settings), Balance(settings), self._event
+        self._course, self._balance = course, balance = Course(planner, settings), Balance(settings)
+        event = self._event
         self._phases = Phases(robot, settings, planner, course, watch, balance, certificates, motion, turn, event)
         self._alarms = Alarms(settings, planner, course, watch, balance, motion, turn, event)
         self.state, self.reason, self._entered = State.STOPPED, "", 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from surefoot.bus.messages import FootholdRegions, FootholdRequest, Plan, PlanRequest
+from surefoot.components.memory import Memory
 
 
 class Questions:
@@ -13,6 +14,8 @@ class Questions:
     Attributes:
         foothold_request, plan_request: to publish, or None; the owner takes them away.
     """
+
+    memory = Memory("_id", foothold_request=FootholdRequest, plan_request=PlanRequest)
 
     def __init__(self) -> None:
         self.foothold_request: FootholdRequest | None = None

@@ -14,12 +14,15 @@ from surefoot.components.fsm.motion import Motion
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
+from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import LEGS
 
 
 class Retreat:
     """How the leg whose turn it is gives up a foothold, or its turn."""
+
+    memory = Memory("_freed", "_why_back")
 
     def __init__(
         self,

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.memory import Memory
+
 
 class StanceWatch:
     """Displacement of the feet from their anchors, as the feet that carry the robot see it.
@@ -17,6 +19,8 @@ class StanceWatch:
         sunk: (4,) feet whose safe foothold has given way.
         borne_n: (4,) largest normal force on each foot since it was trusted or, later, set down again [N].
     """
+
+    memory = Memory("drift_W", "sunk", "borne_n", "_anchor_W", "_safe_W")
 
     def __init__(self) -> None:
         self.drift_W = np.zeros(3)

@@ -11,6 +11,7 @@ import pinocchio as pin
 
 from surefoot.bus.messages import ControlMode, LegStatus, MotionReference, Policy, StateEstimate
 from surefoot.components.component import Component, Inbox, Outbox
+from surefoot.components.memory import Memory
 from surefoot.components.mpc.motion_sampler import MotionSampler
 from surefoot.components.ocp.centroidal_dynamics import Trajectory
 from surefoot.components.ocp.node_reference import NodeReference
@@ -46,6 +47,7 @@ class Mpc(Component):
     name: ClassVar[str] = "mpc"
     inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "fsm/reference")
     outputs: ClassVar[tuple[str, ...]] = ("mpc/policy",)
+    memory: ClassVar[Memory] = Memory("_contact", "_t", _iterate=Trajectory)
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)

@@ -10,6 +10,7 @@ import numpy as np
 
 from surefoot.bus.messages import Plan, PlanRequest, StateEstimate
 from surefoot.components.component import Component, Inbox, Outbox
+from surefoot.components.memory import Memory
 from surefoot.components.ocp.problem import Problem, State, policy_states
 from surefoot.components.ocp.riccati import SolverFailed
 from surefoot.components.robot_model.rotation import matrix_of, rpy_of
@@ -24,6 +25,7 @@ class Trajopt(Component):
     name: ClassVar[str] = "trajopt"
     inputs: ClassVar[tuple[str, ...]] = ("trajopt/request", "state/estimate")
     outputs: ClassVar[tuple[str, ...]] = ("trajopt/plan",)
+    memory: ClassVar[Memory] = Memory("trouble")
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.bus.messages import Policy
+from surefoot.components.memory import Memory
 from surefoot.components.robot_model.rotation import exp_rotation, log_rotation, matrix_of_rpy
 from surefoot.config.robot import GRAVITY
 from surefoot.config.wbc import Wbc
@@ -38,6 +39,8 @@ class BaseTarget:
     Attributes:
         held_s: how long the base has been held without a policy; 0 with one [s].
     """
+
+    memory = Memory("held_s", "_with_policy", "_lost_t", "_fade_t", _last=Target, _held=Target, _gap=tuple)
 
     def __init__(self, settings: Wbc, mass: float):
         self._settings = settings

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.components.memory import Memory
 from surefoot.config.robot import GRAVITY
 from surefoot.config.wbc import Wbc
 
@@ -20,6 +21,8 @@ class MomentumObserver:
     Attributes:
         wrench_W: (6,) external force and moment about the centre of mass, within their limits [N, N m].
     """
+
+    memory = Memory("wrench_W", "_raw", "_explained")
 
     def __init__(self, settings: Wbc, mass: float):
         weight = mass * GRAVITY

@@ -9,6 +9,7 @@ import numpy as np
 from surefoot.bus.messages import ControlMode, JointCommand, LegStatus, MotionReference, Policy, StateEstimate
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.gait.swing_spline import SwingSpline
+from surefoot.components.memory import Memory
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotation import log_rotation, matrix_of
 from surefoot.components.wbc.base_target import BaseTarget
@@ -28,6 +29,9 @@ class Wbc(Component):
     name: ClassVar[str] = "wbc"
     inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "mpc/policy", "fsm/reference")
     outputs: ClassVar[tuple[str, ...]] = ("joint/command",)
+    memory: ClassVar[Memory] = Memory(
+        "_failures", "_last_force", "_last_t", _target=BaseTarget, _observer=MomentumObserver
+    )
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)

@@ -13,8 +13,12 @@ from surefoot.bus.recording.reader import Recording
 from surefoot.bus.recording.step_log import CHECKPOINT, STEPS, StepLog
 from surefoot.bus.recording.writer import DIGEST, RecordingWriter, message_type
 from surefoot.bus.topics import PROCESSES
+from surefoot.components.registry import component_class
 from surefoot.tools.recording.difference import digest
 from surefoot.tools.recording.track import LoggedStep, MessageId, Track, load
+
+REMEMBER = tuple(name for name in PROCESSES if component_class(name).remembers)
+"""Processes whose state can be recorded: all but the robot's own."""
 
 
 def cut(
@@ -22,7 +26,7 @@ def cut(
     out: Path,
     from_t: float,
     until_t: float,
-    processes: Collection[str] = tuple(name for name in PROCESSES if name != "io"),
+    processes: Collection[str] = REMEMBER,
     digests: Collection[str] = (),
 ) -> None:
     """Write what a replay of `processes` from `from_t` to `until_t` [s] needs, and nothing else.
