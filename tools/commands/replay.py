@@ -42,6 +42,9 @@ def add(commands: argparse._SubParsersAction) -> None:
         "--from", dest="begin", type=float, default=float("-inf"), metavar="T", help="run's time [s]"
     )
     parser.add_argument("--to", dest="end", type=float, default=float("inf"), metavar="T", help="run's time [s]")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="another setting than the recorded one"
+    )
     parser.add_argument("--publish", action="store_true", help="play back on the bus")
     parser.add_argument("--speed", type=float, default=1.0, help="seconds of the run for each on the wall")
     parser.add_argument("--namespace", default="surefoot", help="of the bus that is played on")
@@ -62,7 +65,7 @@ def _run(call: argparse.Namespace) -> int:
     from surefoot.tools.recording.replay import replay
     from surefoot.tools.recording.replay_table import table
 
-    result = replay(call.recording, _processes(call.processes), call.begin, call.end)
+    result = replay(call.recording, _processes(call.processes), call.begin, call.end, call.set)
     console.print(*table(call.recording, result, call.diff), sep="\n")
     return 1 if call.check and not (result.comparison.equal and not any(result.left_out.values())) else 0
 

@@ -17,7 +17,7 @@ from surefoot.components.clock_messages import unpack_snapshot
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.registry import component_class
 from surefoot.config.deployment import Deployment
-from surefoot.config.typed_toml import build, without_unknown
+from surefoot.config.typed_toml import build, with_override, without_unknown
 from surefoot.tools.recording.comparison import Comparison
 from surefoot.tools.recording.track import LoggedStep, Material, MessageId, Track, load
 
@@ -39,18 +39,28 @@ class ReplayResult:
     notes: list[str] = field(default_factory=list)
 
 
-def recorded_deployment(recording: Recording) -> tuple[Deployment, list[str]]:
+def recorded_deployment(recording: Recording, overrides: Sequence[str] = ()) -> tuple[Deployment, list[str]]:
     """The configuration that a recording was made with, and what of it this version does not know.
+
+    Args:
+        recording: the recording.
+        overrides: assignments `section.key=value`, to see what they would have changed.
 
     Raises:
         ConfigError: this version cannot be configured so.
     """
     table, unknown = without_unknown(Deployment, recording.config)
+    for assignment in overrides:
+        table = with_override(table, assignment)
     return build(Deployment, table), unknown
 
 
 def replay(
-    path: Path, processes: Sequence[str], from_t: float = float("-inf"), until_t: float = float("inf")
+    path: Path,
+    processes: Sequence[str],
+    from_t: float = float("-inf"),
+    until_t: float = float("inf"),
+    overrides: Sequence[str] = (),
 ) -> ReplayResult:
     """Replay some processes of a recording.
 
@@ -61,13 +71,14 @@ def replay(
         processes: by name.
         from_t: begin at each one's last recorded state before this time [s].
         until_t: end with the steps at this time [s].
+        overrides: settings other than the recorded ones.
 
     Raises:
-        RecordingError: it is no recording, or holds no steps of one of the processes.
+        RecordingError: it is no recording, or holds nothing of one of the processes.
         ConfigError: this version does not take its configuration.
     """
     recording = Recording(path)
-    deployment, unknown = recorded_deployment(recording)
+    deployment, unknown = recorded_deployment(recording, overrides)
     material = load(recording, processes, until_t)
     result = ReplayResult(Comparison(material.messages))
     if recording.damage:
@@ -77,8 +88,8 @@ def replay(
     players: dict[str, _Player] = {}
     for name in ordered:
         track = material.tracks[name]
-        if not track.steps:
-            raise RecordingError(f"{path} holds no steps of {name}")
+        if not track.steps and not track.checkpoints:
+            raise RecordingError(f"{path} holds nothing of {name}")
         track = track.from_time(from_t)
         players[name] = _Player(deployment, track, material, players, result)
     steps = [step for player in players.values() for step in player.track.steps]

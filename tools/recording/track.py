@@ -83,10 +83,11 @@ def load(recording: Recording, processes: Collection[str], until_t: float = floa
     messages: dict[MessageId, Recorded] = {}
     for item in recording:
         prefix, _, name = item.key.partition("/")
-        if item.t_ns / 1e9 > until_t:
-            continue
         if prefix == STEPS and name in tracks:
-            tracks[name].steps += _steps(decode(StepLog, item.payload))
+            steps = _steps(decode(StepLog, item.payload))
+            tracks[name].steps += [step for step in steps if step.t <= until_t]
+        elif item.t_ns / 1e9 > until_t:
+            continue
         elif prefix == CHECKPOINT and name in tracks:
             tracks[name].checkpoints.append(decode(Checkpoint, item.payload))
         elif item.key in wanted:
