@@ -63,6 +63,10 @@ def update(name, folder):
     changed = ["new"]
     if clip.exists():
         topics = replay(clip, REMEMBER).comparison.topics
-        changed = [f"{key}: {topic.differing} differ, first {topic.first}" for key, topic in topics.items() if not topic.equal]
+        changed = [
+            f"{key}: {topic.differing} differ, first {topic.first}"
+            for key, topic in topics.items()
+            if not topic.equal
+        ]
     cut(record(scene.settings, folder), clip, scene.from_t, scene.until_t, digests=DIGESTS)
     return f"{name}, {clip.stat().st_size / 1e6:.2f} MB: {'; '.join(changed) or 'nothing has changed'}"

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from typing import Any
 
 from surefoot.tools.evaluation.source import source_digest
+from surefoot.tools.recording.numerics import numerics
 
 
 def about(config: dict[str, Any], how: str) -> dict[str, str]:
@@ -21,6 +22,7 @@ def about(config: dict[str, Any], how: str) -> dict[str, str]:
         "config": json.dumps(config, sort_keys=True),
         "version": version("surefoot"),
         "source": source_digest(),
+        "numerics": numerics(),
         "made": datetime.now(UTC).isoformat(timespec="seconds"),
         "how": how,
     }

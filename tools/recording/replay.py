@@ -19,7 +19,11 @@ from surefoot.components.registry import component_class
 from surefoot.config.deployment import Deployment
 from surefoot.config.typed_toml import build, with_override, without_unknown
 from surefoot.tools.recording.comparison import Comparison
+from surefoot.tools.recording.numerics import numerics
 from surefoot.tools.recording.track import LoggedStep, Material, MessageId, Track, load
+
+TOLERANCE = 1e-4
+"""Between machines of different arithmetic: of the largest number in a field."""
 
 
 @dataclass
@@ -80,7 +84,13 @@ def replay(
     recording = Recording(path)
     deployment, unknown = recorded_deployment(recording, overrides)
     material = load(recording, processes, until_t)
-    result = ReplayResult(Comparison(material.messages))
+    alike = recording.about.get("numerics") == numerics()
+    result = ReplayResult(Comparison(material.messages, 0.0 if alike else TOLERANCE))
+    if not alike:
+        result.notes.append(
+            "recorded on a machine whose arithmetic gives other last bits: numbers are compared to "
+            f"{TOLERANCE:g} of the largest in their field"
+        )
     if recording.damage:
         result.notes.append(f"{path}: {recording.damage}")
     result.notes += [f"{key}: unknown to this version, left out" for key in unknown]
