@@ -12,6 +12,16 @@ from surefoot.tools.recording.replay import recorded_deployment, replay
 
 CHAIN = {"wbc": ("mpc", "wbc")}  # of the policy the clips hold digests only
 IDLE = {("stand", "trajopt"), ("step", "trajopt"), ("map", "trajopt")}  # no plan is asked for
+QP_SHARE = 0.03  # on other arithmetic the QP's interior point stops an iteration earlier or later now and then
+
+
+def differing(result):
+    """The topics that are not what they were, and how."""
+    return {
+        key: topic.first
+        for key, topic in result.comparison.topics.items()
+        if topic.missing or topic.extra or topic.differing > (0.0 if result.exact else QP_SHARE * topic.compared)
+    }
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -29,8 +39,7 @@ def refreshed(request, tmp_path_factory):
 @pytest.mark.parametrize("process", REMEMBER)
 def test_a_component_publishes_what_it_published_when_it_was_recorded(name, process):
     result = replay(scenes.path(name), CHAIN.get(process, (process,)))
-    told = {key: topic.first for key, topic in result.comparison.topics.items() if topic.first}
-    assert told == {} and not any(result.left_out.values()), result.notes
+    assert differing(result) == {} and not any(result.left_out.values()), result.notes
     if (name, process) not in IDLE:
         assert result.steps[process] > 0
 
@@ -38,7 +47,7 @@ def test_a_component_publishes_what_it_published_when_it_was_recorded(name, proc
 @pytest.mark.parametrize("name", scenes.SCENES)
 def test_all_together_publish_the_same(name):
     result = replay(scenes.path(name), REMEMBER)
-    assert result.comparison.equal and not any(result.left_out.values())
+    assert differing(result) == {} and not any(result.left_out.values()), result.notes
 
 
 @pytest.mark.parametrize(
@@ -54,6 +63,8 @@ def test_all_together_publish_the_same(name):
 )
 def test_another_setting_is_seen(name, process, setting, key):
     result = replay(scenes.path(name), CHAIN.get(process, (process,)), overrides=[setting])
+    if result.comparison.topics[key].unread:
+        pytest.skip("only digests were recorded, on a machine of other arithmetic")
     assert result.comparison.topics[key].differing and result.comparison.topics[key].first
 
 

@@ -32,12 +32,14 @@ class ReplayResult:
 
     Attributes:
         comparison: what was published, topic by topic.
+        exact: the recording is of a machine of the same arithmetic: equal means equal bytes.
         steps: how many steps of each process were made again.
         left_out: steps of each that could not be: the recording lacks their inputs or a state to begin from.
         notes: what a reader should know, in words.
     """
 
     comparison: Comparison
+    exact: bool = True
     steps: dict[str, int] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
@@ -85,7 +87,7 @@ def replay(
     deployment, unknown = recorded_deployment(recording, overrides)
     material = load(recording, processes, until_t)
     alike = recording.about.get("numerics") == numerics()
-    result = ReplayResult(Comparison(material.messages, 0.0 if alike else TOLERANCE))
+    result = ReplayResult(Comparison(material.messages, 0.0 if alike else TOLERANCE), alike)
     if not alike:
         result.notes.append(
             "recorded on a machine whose arithmetic gives other last bits: numbers are compared to "
