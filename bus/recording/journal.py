@@ -81,7 +81,7 @@ class Journal:
         self._begun = time.monotonic()
         self._kept: deque[tuple[float, bytes]] = deque()
         self._steps = self._logged = self._checkpoints = 0
-        self._checkpoint_t = -np.inf
+        self._checkpoint_t = -CHECKPOINT_S
         self._released: list[float] = []
         self._reads: list[tuple[int, int, int, int]] = []
 

@@ -70,7 +70,10 @@ class Recording:
         self.journals = []
         for record in self._records():
             if isinstance(record, Message):
-                channel = channels[record.channel_id]
+                channel = channels.get(record.channel_id)
+                if channel is None:
+                    self.damage = "it holds messages of a topic that it does not name"
+                    return
                 digest = channel.message_encoding == DIGEST
                 yield Recorded(channel.topic, record.log_time, record.sequence, record.data, digest)
             elif isinstance(record, Channel):
@@ -83,7 +86,7 @@ class Recording:
         self.damage = "it was not closed"
         try:
             with self.path.open("rb") as file:
-                for record in StreamReader(file, record_size_limit=1 << 30).records:
+                for record in StreamReader(file, validate_crcs=True, record_size_limit=1 << 30).records:
                     if isinstance(record, Footer):
                         self.damage = ""
                     yield record

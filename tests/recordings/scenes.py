@@ -44,15 +44,16 @@ def path(name):
     return HERE / f"{name}.mcap"
 
 
-def record(settings, folder):
-    """The run that the scenes with these settings are cut from."""
+def record(settings, folder, until_s=None):
+    """The run that the scenes with these settings are cut from, or the first `until_s` of it."""
     whole = folder / f"{'-'.join(settings) or 'run'}.mcap"
     if not whole.exists():
         deployment = load_deployment(CONFIG / "planks.toml", settings)
         stack = Lockstep(deployment)
         recording = LockstepRecording(stack, deployment, whole)
         stack.command("forward")
-        stack.run(max(scene.until_t for scene in SCENES.values() if scene.settings == settings) + 0.01)
+        ends = [scene.until_t for scene in SCENES.values() if scene.settings == settings]
+        stack.run(until_s or max(ends) + 0.01)
         recording.close()
     return whole
 
