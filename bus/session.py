@@ -117,6 +117,26 @@ class Session:
                 answers[int(str(reply.ok.key_expr).rsplit("/", 1)[1])] = reply.ok.payload.to_bytes()
         return [answers[index] for index in sorted(answers)]
 
+    def serve_each(self, key: str, answer: Callable[[int], bytes | None]) -> None:
+        """Give `answer(number)`, if there is one, to everyone who asks for a number of a key."""
+        whole = f"{self._prefix}/{key}"
+
+        def on_query(query: zenoh.Query) -> None:
+            with query:
+                number = str(query.key_expr).rsplit("/", 1)[1]
+                payload = answer(int(number)) if number.isdecimal() else None
+                if payload is not None:
+                    query.reply(f"{whole}/{number}", payload)
+
+        self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
+
+    def ask_each(self, key: str, number: int, timeout_s: float = 2.0) -> bytes | None:
+        """What is served under a number of a key; None when nobody has it."""
+        for reply in self._session.get(f"{self._prefix}/{key}/{number}", timeout=timeout_s):
+            if reply.ok is not None:
+                return reply.ok.payload.to_bytes()
+        return None
+
     def close(self) -> None:
         """Leave the bus."""
         self._session.close()

@@ -27,7 +27,7 @@ class OperatorDesk:
         self._journal = Journal(_NAME)
         session.subscribe(clock.REQUEST, lambda key, payload: self._requests.put(payload))
         session.serve(f"{clock.KEPT}/{_TOPIC}", lambda: list(self._kept))
-        session.serve(f"{LOG}/{_NAME}", self._journal.kept)
+        session.serve_each(f"{LOG}/{_NAME}", self._journal.kept)
 
     def publish(self, t: float) -> int:
         """Publish at time `t` [s] what has been asked; how many commands that were."""

@@ -54,15 +54,18 @@ class Stepper:
         self._outgoing: list[tuple[str, Message]] = []
         self._kept: dict[str, deque[bytes]] = {key: deque(maxlen=KEPT) for key in component.outputs}
         self._lossless = {key: simulated or not TOPICS[key].rate_hz for key in component.outputs}
+        self._boot = boot
         self._active = self._restored = False
         self._t = 0.0
 
     def connect(self) -> None:
         """Begin to listen to the inputs, and keep the last outputs for readers that come late."""
+        if self._boot == 0:
+            self._begin_journal()
         self.buffers.connect(self._session)
         for key, kept in self._kept.items():
             self._session.serve(f"{clock.KEPT}/{key}", partial(list, kept))
-        self._session.serve(f"{LOG}/{self.component.name}", self.journal.kept)
+        self._session.serve_each(f"{LOG}/{self.component.name}", self.journal.kept)
 
     def resume(self, resume: clock.Resume, visible: dict[str, int]) -> None:
         """Take the place of a process that is gone, where its last finished step left it."""

@@ -23,7 +23,7 @@ CHECKPOINT_S = 1.0
 
 _BATCH_S = 0.1  # of wall time: what a process that is killed takes with it at the most
 _BATCH_BYTES = 1 << 20
-_KEPT_S = 5.0  # a recorder that was held up can ask for what it has missed
+_KEPT_S = 8.0  # a recorder that was held up can ask for what it has missed
 
 Record = tuple[str, int, int, bytes]
 """Key, time on the run's clock [ns], sequence number, bytes."""
@@ -79,7 +79,7 @@ class Journal:
         self._bytes = 0
         self._number = 0
         self._begun = time.monotonic()
-        self._kept: deque[tuple[float, bytes]] = deque()
+        self._kept: deque[tuple[float, int, bytes]] = deque()
         self._steps = self._logged = self._checkpoints = 0
         self._checkpoint_t = -CHECKPOINT_S
         self._released: list[float] = []
@@ -173,14 +173,14 @@ class Journal:
         if batch is None:
             return None
         payload, now = batch.pack(), time.monotonic()
-        self._kept.append((now, payload))
+        self._kept.append((now, batch.number, payload))
         while now - self._kept[0][0] > _KEPT_S:
             self._kept.popleft()
         return payload
 
-    def kept(self) -> list[bytes]:
-        """The batches of the last few seconds (also called from the bus's thread)."""
-        return [payload for _, payload in list(self._kept)]
+    def kept(self, number: int) -> bytes | None:
+        """A batch of the last few seconds (also called from the bus's thread)."""
+        return next((payload for _, each, payload in list(self._kept) if each == number), None)
 
     def _log_steps(self) -> None:
         """Note the steps since the last log."""

@@ -79,7 +79,11 @@ class Recording:
             elif isinstance(record, Channel):
                 channels[record.id] = record
             elif isinstance(record, Metadata) and record.name == BATCH:
-                self.journals.append({name: json.loads(value) for name, value in record.metadata.items()})
+                try:
+                    self.journals.append({name: json.loads(value) for name, value in record.metadata.items()})
+                except ValueError:
+                    self.damage = "what it says of its journals cannot be read"
+                    return
 
     def _records(self) -> Iterator[McapRecord]:
         """Every record up to the end, or to where the file is cut off."""

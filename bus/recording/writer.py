@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -103,7 +104,8 @@ class RecordingWriter:
 
     def abandon(self) -> None:
         """Close without an index, after an error."""
-        self._file.close()
+        with suppress(OSError):  # what is still in its buffer cannot be written either
+            self._file.close()
 
     def _channel(self, key: str, encoding: str) -> int:
         kind = message_type(key)

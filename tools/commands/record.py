@@ -8,7 +8,7 @@ from pathlib import Path
 _HELP = """\
 Record everything that a running stack publishes, and which messages each of its steps read, until Ctrl-C or the
 end of the run. The processes keep their journals themselves and hand them over ten times a second, so that nothing
-is lost however busy the bus is; the recording begins a few seconds before it was asked for.
+is lost however busy the bus is.
 
 exit code: 0 all that was asked for is in the file; 1 it could not be written to the end, or something is missing
 """
@@ -38,13 +38,16 @@ def _run(call: argparse.Namespace) -> int:
     if warning:
         print(warning, flush=True)
     end = ProcessEnd(call.parent)
-    recorder = Recorder(connect(call.namespace, lambda: end.due), call.out)
+    session = connect(call.namespace, lambda: end.due)
+    recorder = Recorder(session, call.out)
     print(f"recording namespace {call.namespace!r} to {call.out}; Ctrl-C ends it", flush=True)
     try:
         recorder.run(lambda: end.due)
     except RecordingError as error:
         print(error, flush=True)
         return 1
+    finally:
+        session.close()
     for each in recorder.lost:
         print(f"lost: {each}", flush=True)
     print(f"recorded to {call.out}", flush=True)

@@ -18,6 +18,7 @@ from surefoot.tools.recording.about import about
 _LOOK_S = 0.05
 _FLUSH_S = 0.4
 _PATIENCE_S = 0.5  # a batch that is not there by then is asked for
+_BEGINNING = 30  # batches: of a process that has just started all are wanted, of an older one those to come
 _HUB_S = 60.0
 _FREE_BYTES = 200_000_000
 
@@ -25,8 +26,8 @@ _FREE_BYTES = 200_000_000
 class _Source:
     """One start of one process: which of its batches have come."""
 
-    def __init__(self) -> None:
-        self.next = 0
+    def __init__(self, begin: int) -> None:
+        self.next = begin
         self.early: dict[int, Batch] = {}
         self.missed_since = 0.0
         self.ended = False
@@ -91,39 +92,46 @@ class Recorder:
     def _take(self, wait_s: float) -> None:
         """Write what has arrived."""
         time.sleep(wait_s)  # many at a time are cheaper than each alone
-        while not self._arrived.empty():
+        for _ in range(self._arrived.qsize()):
             try:
                 self._sort(Batch.unpack(self._arrived.get()))
             except MessageError as error:
                 self.lost.append(str(error))
 
     def _sort(self, batch: Batch) -> None:
-        source = self._sources.setdefault((batch.process, batch.boot), _Source())
+        source = self._sources.get((batch.process, batch.boot))
+        if source is None:
+            begin = batch.number if batch.number > _BEGINNING else 0
+            source = self._sources[batch.process, batch.boot] = _Source(begin)
         if batch.number < source.next:
             return
         source.early[batch.number] = batch
         for each in source.ready():
             source.ended = each.last
             self._writer.add(each)
-        source.missed_since = time.monotonic() if source.early else 0.0
+        if not source.early:
+            source.missed_since = 0.0
+        elif not source.missed_since:
+            source.missed_since = time.monotonic()
 
     def _repair(self) -> None:
         """Ask the processes for batches that were overtaken by later ones; skip those that nobody has."""
         for (process, boot), source in list(self._sources.items()):
             if not source.early or time.monotonic() - source.missed_since < _PATIENCE_S:
                 continue
-            for payload in self._session.ask(f"{LOG}/{process}"):
+            for number in range(source.next, min(source.early)):
+                payload = self._session.ask_each(f"{LOG}/{process}", number)
+                if payload is None:
+                    break  # what is older is not kept either
                 batch = Batch.unpack(payload)
                 if batch.boot == boot:
                     self._sort(batch)
-            if source.early and source.next not in source.early:
+            if source.early:
                 self._skip(process, boot, source)
 
     def _skip(self, process: str, boot: int, source: _Source) -> None:
         first = min(source.early)
-        if source.next > 0:
-            self.lost.append(f"{process}: batches {source.next} to {first - 1} after restart {boot}")
-        # At the beginning they lie before the time from which a process can still tell.
+        self.lost.append(f"{process}: batches {source.next} to {first - 1} after {boot} restarts")
         source.next = first
         for each in source.ready():
             source.ended = each.last

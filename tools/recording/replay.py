@@ -80,7 +80,7 @@ def replay(
         overrides: settings other than the recorded ones.
 
     Raises:
-        RecordingError: it is no recording, or holds nothing of one of the processes.
+        RecordingError: it is no recording, or holds nothing of any of the processes.
         ConfigError: this version does not take its configuration.
     """
     recording = Recording(path)
@@ -96,12 +96,14 @@ def replay(
     if recording.damage:
         result.notes.append(f"{path}: {recording.damage}")
     result.notes += [f"{key}: unknown to this version, left out" for key in unknown]
-    ordered = [name for name in PROCESSES if name in processes]
+    held = [name for name in processes if material.tracks[name].steps or material.tracks[name].checkpoints]
+    if not held:
+        raise RecordingError(f"{path} holds nothing of {', '.join(processes)}")
+    result.notes += [f"{name}: nothing of it was recorded" for name in processes if name not in held]
+    ordered = [name for name in PROCESSES if name in held]
     players: dict[str, _Player] = {}
     for name in ordered:
         track = material.tracks[name]
-        if not track.steps and not track.checkpoints:
-            raise RecordingError(f"{path} holds nothing of {name}")
         track = track.from_time(from_t)
         players[name] = _Player(deployment, track, material, players, result)
     steps = [step for player in players.values() for step in player.track.steps]

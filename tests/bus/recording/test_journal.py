@@ -31,7 +31,8 @@ def test_batches_are_numbered_and_hold_every_record_once():
     assert np.concatenate([log.release_t for log in logs]).tolist() == [0.1 * seq for seq in range(5)]
     assert np.concatenate([log.first_step + log.read_step for log in logs]).tolist() == [0, 1, 2, 3, 4]
     assert np.concatenate([log.read_seq for log in logs]).tolist() == [0, 1, 2, 3, 4]
-    assert [Batch.unpack(payload) for payload in journal.kept()] == taken
+    assert [Batch.unpack(journal.kept(number)) for number in range(3)] == taken
+    assert journal.kept(3) is None
 
 
 def test_nothing_noted_is_no_batch():
