@@ -7,6 +7,7 @@ import time
 
 from surefoot.bus.messages import ProcessStatus
 from surefoot.bus.topics import TOPICS
+from surefoot.components.fsm.fsm import DIRECTIONS
 from surefoot.tools.picture import Picture, Watched
 
 SILENT_S = 3.0
@@ -113,6 +114,8 @@ def _of_robot(picture: Picture) -> str:
         if reference.reason in ("waiting for a command", "commanded", "sitting"):
             return f"the robot is damped ({reference.reason}): `surefoot command stand` or a direction gets it up"
         return f"the robot is damped: {reference.reason}"
+    if reference.state == "STAND" and picture.command in DIRECTIONS:
+        return ""  # it sets off as soon as it is at its height
     if reference.state == "STAND":
         return "the robot stands and waits for a command: `surefoot command forward` sends it on"
     if reference.state == "STOPPED":

@@ -17,7 +17,7 @@ from surefoot.tools.picture import Picture
 from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.solve_time import light_profile_reason
 from surefoot.tools.status_screen import TOLD, event_line, process_table, screen
-from surefoot.tools.supervisor import Supervisor
+from surefoot.tools.supervisor import ENDS_RUN, Supervisor
 from surefoot.tools.verdict import Verdict, verdict
 
 _LINE_S = 10.0
@@ -67,10 +67,13 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool, re
         return state.reason if state.over else ""
 
     console.print(f"{title}; logs in {deployment.run.log_dir}/; Ctrl-C ends the run")
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for number in ENDS_RUN:
+        if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has it
+            signal.signal(number, signal.default_int_handler)
     try:
         if interactive:
-            with Live(console=console, screen=True, auto_refresh=False) as live:
+            # The screen wraps long lines; the console that prints on leaves that to the terminal.
+            with Live(console=Console(), screen=True, auto_refresh=False) as live:
 
                 def draw(picture: Picture) -> None:
                     closing = f"{state.reason}. {state.advice}" if state.reason else ""

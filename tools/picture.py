@@ -65,6 +65,7 @@ class Picture:
         events: of the state machine, oldest first.
         counts: how many events of each kind.
         displacement_m: the largest of a foot on the ground.
+        command: what was commanded last; empty before.
         direction: of the walk that was commanded last; empty before.
         notes: what the supervisor did, in words.
         ending: in words why the run ends; empty while it goes on.
@@ -78,6 +79,7 @@ class Picture:
     events: list[FsmEvent] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
     displacement_m: float = 0.0
+    command: str = ""
     direction: str = ""
     notes: list[str] = field(default_factory=list)
     ending: str = ""
@@ -102,6 +104,7 @@ class Picture:
 
     def note_command(self, command: str) -> None:
         """Take in what the robot was told."""
+        self.command = command
         if command in DIRECTIONS:
             self.direction = command
 

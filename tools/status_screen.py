@@ -109,7 +109,7 @@ def process_table(picture: Picture) -> Table:
         status = watched.status
         boot = str(max(watched.restarts, status.boot if status is not None else 0))
         if status is None or watched.out:
-            state = "out" if watched.out else "lent" if watched.lent_to else "not heard"
+            state = "out" if watched.out else "lent" if watched.lent_to else "absent"
             table.add_row(name, Text(state, style="yellow"), *[""] * 7, boot)
             continue
         table.add_row(

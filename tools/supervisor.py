@@ -43,6 +43,9 @@ HOLDS_ROBOT = ("estimator", "wbc", "fsm")
 """On the monotonic clock these are restarted only while the robot is damped: they keep no memory of what they do.
 The others may be at any time: the whole-body controller holds the base meanwhile."""
 
+ENDS_RUN = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""Ctrl-C, `kill`, and a terminal that is closed end a run in order."""
+
 KILL_AFTER_S = 3.0
 """A process that has not ended so long after it was told to is killed: a stop takes at most this for each."""
 
@@ -404,7 +407,7 @@ class Supervisor:
 @contextmanager
 def _deaf() -> Iterator[None]:
     """Signals that end a run are ignored."""
-    before = {number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in ENDS_RUN}
     try:
         yield
     finally:

@@ -42,7 +42,9 @@ def test_a_process_that_crashes_is_restarted_three_times_and_then_ends_the_run(s
     assert "restarted, 3 of 3" in live.log("supervisor")
 
 
-@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL], ids=lambda how: how.name)
+@pytest.mark.parametrize(
+    "how", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL], ids=lambda how: how.name
+)
 def test_no_process_is_left_behind(supervised, how):
     live = supervised("run.command=stand")
     pids = live.pids()

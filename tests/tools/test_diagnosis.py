@@ -178,6 +178,14 @@ def test_a_state_machine_that_waits_for_a_person_says_so(state, reason, words):
     assert troubles(picture, NOW) == {}
 
 
+def test_a_robot_that_has_stood_up_to_walk_is_not_said_to_wait():
+    picture = walking("STAND", "stood up")
+    picture.note_command("forward")
+    assert why(picture) == ""
+    picture.note_command("stand")
+    assert "waits for a command" in why(picture)
+
+
 def test_a_goal_reached_and_an_end_are_told():
     picture = walking("STOPPED", "arrived")
     picture.reference = MotionReference(t=5.0, state="STOPPED", finished=True)

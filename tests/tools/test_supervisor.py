@@ -66,6 +66,7 @@ def test_a_stop_is_carried_through_whoever_presses_ctrl_c_again(tmp_path, monkey
     def end(watched):
         os.kill(os.getpid(), signal.SIGINT)
         os.kill(os.getpid(), signal.SIGTERM)
+        os.kill(os.getpid(), signal.SIGHUP)
         ended.append(watched.name)
 
     monkeypatch.setattr(supervisor, "_end", end)
