@@ -86,9 +86,11 @@ def _of_processes(picture: Picture, now: float) -> str:
     if name := awaited(picture):
         words = _absence(processes[name], now)
         return f"simulated time waits for {name}{f', which {words}' if words else ': its step is not over yet'}"
-    for name in processes:
-        if words := _absence(processes[name], now):
-            return f"{name} {words}"
+    # While simulated time goes on it has not come yet to a step of one that is not there.
+    if not (picture.simulated and io.status is not None and io.status.steps > 0):
+        for name in processes:
+            if words := _absence(processes[name], now):
+                return f"{name} {words}"
     for name, watched in processes.items():
         if watched.status is not None and watched.status.life == "ACTIVATING":
             culprit, words = _root(picture, name, watched.status.reason)

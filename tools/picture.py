@@ -69,6 +69,7 @@ class Picture:
         direction: of the walk that was commanded last; empty before.
         notes: what the supervisor did, in words.
         ending: in words why the run ends; empty while it goes on.
+        simulated: time is known to wait for every process.
     """
 
     processes: dict[str, Watched] = field(default_factory=lambda: {name: Watched(name) for name in PROCESSES})
@@ -83,6 +84,7 @@ class Picture:
     direction: str = ""
     notes: list[str] = field(default_factory=list)
     ending: str = ""
+    simulated: bool = False
     _clock: deque[tuple[float, float]] = field(default_factory=deque)
     _first: tuple[float, float] | None = None
 

@@ -117,6 +117,7 @@ class StackWatch:
             self._deployment = load_deployment(notice.config, notice.settings)
         except ConfigError:
             return  # the file has changed since, or lies on another machine
+        self.picture.simulated = self._deployment.run.clock == "simulated"
         self._observer.margin = SupportMargin(self._deployment.load_robot())
 
 

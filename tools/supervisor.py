@@ -85,7 +85,7 @@ class Supervisor:
             self._overrides.append(f"run.epoch_s={time.monotonic()!r}")
         self._log_dir = Path(deployment.run.log_dir)
         self._sources = sources
-        self.picture = Picture()
+        self.picture = Picture(simulated=self._simulated)
         self._session: Session | None = None
         self._observer: Observer | None = None
         self._guardian: Guardian | None = None

@@ -122,6 +122,17 @@ def test_in_real_time_a_process_that_fails_or_falls_silent_is_named():
     assert why(picture) == "mpc has failed: SolverFailed: riccati, node 3"
 
 
+def test_while_simulated_time_goes_on_one_that_is_not_there_keeps_nobody_from_moving():
+    picture = walking()
+    picture.processes["trajopt"].status = None
+    assert why(picture).startswith("trajopt has not spoken yet")
+    picture.simulated = True
+    assert why(picture) == "" and "trajopt" in troubles(picture, NOW)
+    say(picture, "wbc", life="ACTIVATING", reason="no message yet on mpc/policy",
+        input_age_s=ages("wbc", mpc_policy=-1.0))  # fmt: skip
+    assert "mpc is behind it" in why(picture)
+
+
 def test_one_that_waits_for_its_first_input_leads_to_the_one_that_does_not_write_it():
     picture = walking()
     say(picture, "wbc", life="ACTIVATING", reason="no message yet on state/estimate",
