@@ -109,17 +109,19 @@ class Supervisor:
             self._start("io")
             self._session = self._connect()
             self._listen(self._session)
-            self._await("io", each)
+            self._await_io(each)
+            first = self._deployment.run.command
             if self._simulated:
-                self._command(self._deployment.run.command)
+                self._command(first)
             for name in PROCESSES:
                 if name != "io":
                     self._start(name)
-            if not self._simulated:
-                self._await("fsm", each)
-                self._command(self._deployment.run.command)
             while True:
                 self._look(each)
+                # In real time nobody keeps a command for one that does not listen yet.
+                if not self._simulated and first and self.picture.processes["fsm"].status is not None:
+                    self._command(first)
+                    first = ""
                 reason = until(self.picture) or self._reconcile()
                 if reason:
                     self.picture.ending = reason
@@ -347,10 +349,10 @@ class Supervisor:
                         f"io did not open the bus in {_HUB_S:.0f} s, see {self._log_of('io')}"
                     ) from None
 
-    def _await(self, name: str, each: Callable[[Picture], None]) -> None:
-        """Until a process has spoken: what is published before its subscriptions stand is lost."""
-        watched = self.picture.processes[name]
-        while watched.status is None and watched.exit_code is None:
+    def _await_io(self, each: Callable[[Picture], None]) -> None:
+        """Until it has spoken: what is published before its subscriptions stand is lost."""
+        io = self.picture.processes["io"]
+        while io.status is None and io.exit_code is None:
             self._look(each)
             time.sleep(_LOOK_S)
 

@@ -2,13 +2,17 @@
 
 import time
 
+import pytest
+
 from surefoot.bus.topics import PROCESSES
 
 
-def test_killed_before_the_bus_is_open(supervised):
+# The guardian and io before the bus is open; the others when they have only just been started.
+@pytest.mark.parametrize("count", [2, len(PROCESSES) + 1])
+def test_killed_while_it_starts(supervised, count):
     live = supervised(until_up=False)
     pids = []
-    while len(pids) < 2:  # the guardian and io
+    while len(pids) < count:
         pids = live.children()
         assert live.run.poll() is None, live.said()
     live.run.kill()
