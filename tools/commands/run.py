@@ -21,6 +21,10 @@ direction). With --set run.clock=monotonic it keeps real time; a machine that ca
 enough says so and runs its light profile, and estimator, wbc and fsm are restarted only while the robot is
 damped.
 
+--reload, with the simulated clock, watches the project's source files: a change restarts just the processes that
+import the changed file, once it compiles; one that fails with the new source waits for the next change.
+`surefoot child CONFIG NAME` in another terminal takes the place of one process, under a debugger if you like.
+
 exit code: 0 goal reached, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
 """
 
@@ -32,7 +36,7 @@ def add(commands: argparse._SubParsersAction) -> None:
         help="start every process of a deployment",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description=_RUN,
-        epilog="example: surefoot run planks",
+        epilog="examples: surefoot run planks\n          surefoot run flat --set run.command=stand --reload",
     )
     parser.add_argument("config", nargs="?", default="planks", help="a deployment file, or its name in config/")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
@@ -40,10 +44,13 @@ def add(commands: argparse._SubParsersAction) -> None:
         "--for", dest="seconds", type=float, default=0.0, help="end after this much of the run's time"
     )
     parser.add_argument("--plain", action="store_true", help="lines instead of a screen")
+    parser.add_argument(
+        "--reload", action="store_true", help="restart the processes whose source changes (simulated clock)"
+    )
     parser.set_defaults(run=_run)
 
 
 def _run(call: argparse.Namespace) -> int:
     from surefoot.tools.live_run import live_run
 
-    return live_run(deployment_file(call.config), call.set, call.seconds, call.plain)
+    return live_run(deployment_file(call.config), call.set, call.seconds, call.plain, call.reload)
