@@ -14,6 +14,7 @@ from surefoot.config.deployment import Deployment, load_deployment
 from surefoot.tools.commands.call import CallError
 from surefoot.tools.diagnosis import why_nothing_moves
 from surefoot.tools.picture import Picture
+from surefoot.tools.recording.recorder import check_space
 from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.solve_time import light_profile_reason
 from surefoot.tools.status_screen import TOLD, event_line, process_table, screen
@@ -24,7 +25,14 @@ _LINE_S = 10.0
 _WHY_S = 3.0
 
 
-def live_run(config: Path, overrides: list[str], seconds: float, plain: bool, reload: bool = False) -> int:
+def live_run(
+    config: Path,
+    overrides: list[str],
+    seconds: float,
+    plain: bool,
+    reload: bool = False,
+    record: Path | None = None,
+) -> int:
     """Run a deployment until it is over or the user ends it.
 
     Args:
@@ -33,12 +41,14 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool, re
         seconds: end after this much of the run's time; 0 no limit.
         plain: lines even where there is a terminal.
         reload: restart the processes whose source changes.
+        record: write everything to this file.
 
     Returns:
         0 the goal was reached, or it was ended in time or by the user; 1 it failed.
 
     Raises:
         CallError: `reload` in real time.
+        RecordingError: there is no folder for the recording.
     """
     console = Console(soft_wrap=True)
     overrides = list(overrides)
@@ -54,7 +64,10 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool, re
         if note:
             overrides.append("mpc.profile=light")
             deployment = load_deployment(config, overrides)
-    supervisor = Supervisor(config, overrides, deployment, SourceWatch() if reload else None)
+    supervisor = Supervisor(config, overrides, deployment, SourceWatch() if reload else None, record)
+    warning = check_space(record) if record is not None else ""
+    if warning:
+        supervisor.note(warning)
     if note:
         supervisor.note(note)
     interactive = console.is_terminal and not plain

@@ -49,6 +49,12 @@ ENDS_RUN = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 KILL_AFTER_S = 3.0
 """A process that has not ended so long after it was told to is killed: a stop takes at most this for each."""
 
+RECORDER = "recorder"
+"""Name of its log; it is no process of the control chain, and the run goes on without it."""
+
+RECORDER_S = 10.0
+"""After the last process the recorder is given so long to write what it has."""
+
 _LOOK_S = 0.1
 _NOTICE_S = 0.5
 _NOTES = 5  # the last ones, in a notice
@@ -69,7 +75,12 @@ class Supervisor:
     """
 
     def __init__(
-        self, config: Path, overrides: list[str], deployment: Deployment, sources: SourceWatch | None = None
+        self,
+        config: Path,
+        overrides: list[str],
+        deployment: Deployment,
+        sources: SourceWatch | None = None,
+        record: Path | None = None,
     ):
         """For a deployment.
 
@@ -78,6 +89,7 @@ class Supervisor:
             overrides: assignments on top of it.
             deployment: what both give.
             sources: restart what is made of them when they change (simulated time only).
+            record: the file that a recorder writes, beside the processes.
         """
         self._config, self._overrides, self._deployment = config, list(overrides), deployment
         self._simulated = deployment.run.clock == "simulated"
@@ -85,6 +97,8 @@ class Supervisor:
             self._overrides.append(f"run.epoch_s={time.monotonic()!r}")
         self._log_dir = Path(deployment.run.log_dir)
         self._sources = sources
+        self._record = record
+        self._recorder: subprocess.Popen | None = None
         self.picture = Picture(simulated=self._simulated)
         self._session: Session | None = None
         self._observer: Observer | None = None
@@ -110,6 +124,7 @@ class Supervisor:
             self._session = self._connect()
             self._listen(self._session)
             self._await_io(each)
+            self._start_recorder(each)
             first = self._deployment.run.command
             if self._simulated:
                 self._command(first)
@@ -137,6 +152,7 @@ class Supervisor:
             self._tell()
             for name in _STOP_ORDER:
                 self._end(self.picture.processes[name])
+            self._end_recorder()
             if self._session is not None:
                 self._session.close()
                 self._session = None
@@ -221,6 +237,51 @@ class Supervisor:
         if self._guardian is not None:
             self._guardian.watch(watched.popen.pid, name)
 
+    def _start_recorder(self, each: Callable[[Picture], None]) -> None:
+        """Before the other processes: their first messages are to be there too."""
+        if self._record is None:
+            return
+        command = [sys.executable, "-P", "-m", "surefoot.tools.cli", "record", str(self._record)]
+        command += ["--namespace", self._deployment.run.namespace, "--parent", str(os.getpid())]
+        with self._log_of(RECORDER).open("wb") as log:
+            self._recorder = subprocess.Popen(
+                command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, start_new_session=True
+            )
+        if self._guardian is not None:
+            self._guardian.watch(self._recorder.pid, RECORDER)
+        while "recording" not in self._log_of(RECORDER).read_text() and self._recorder.poll() is None:
+            self._look(each)
+            time.sleep(_LOOK_S)
+
+    def _end_recorder(self) -> None:
+        """It ends by itself when every process has; what it could not record is noted."""
+        if self._recorder is None:
+            return
+        try:
+            self._recorder.wait(RECORDER_S)
+        except subprocess.TimeoutExpired:
+            self._recorder.terminate()
+            try:
+                self._recorder.wait(KILL_AFTER_S)
+            except subprocess.TimeoutExpired:
+                self._recorder.kill()
+                self._recorder.wait()
+        self._note_recorder()
+
+    def _note_recorder(self) -> None:
+        """Say how the recorder has ended."""
+        if self._recorder is None or (code := self._recorder.poll()) is None:
+            return
+        self._recorder = None
+        lines = self._log_of(RECORDER).read_text(errors="replace").strip().splitlines()
+        if code == 0:
+            self.note(lines[-1])
+        else:
+            how = f"signal {-code}" if code < 0 else lines[-1] if lines else f"exit code {code}"
+            self.note(
+                f"the recorder has ended: {how}; see {self._log_of(RECORDER)}, `surefoot info {self._record}`"
+            )
+
     def _start_again(self, watched: Watched) -> None:
         watched.restarts += 1
         if self._simulated and watched.name == "fsm" and component_class("fsm").snapshot is Component.snapshot:
@@ -262,6 +323,7 @@ class Supervisor:
                 self.note(f"not understood: {' '.join([verb, *words])[:80]!r}")
         if reason := self._bury() or self._take_back():
             return reason
+        self._note_recorder()
         self._reload()
         if (due := self._queue.next()) is not None:
             self.restart(*due)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from surefoot.tools.commands.call import deployment_file
 
@@ -24,6 +25,8 @@ damped.
 --reload, with the simulated clock, watches the project's source files: a change restarts just the processes that
 import the changed file, once it compiles; one that fails with the new source waits for the next change.
 `surefoot child CONFIG NAME` in another terminal takes the place of one process, under a debugger if you like.
+
+--record OUT.mcap writes all that is published and what every step has read: see `surefoot info` and `replay`.
 
 exit code: 0 goal reached, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
 """
@@ -47,10 +50,11 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--reload", action="store_true", help="restart the processes whose source changes (simulated clock)"
     )
+    parser.add_argument("--record", type=Path, metavar="OUT.mcap", help="record everything that is published")
     parser.set_defaults(run=_run)
 
 
 def _run(call: argparse.Namespace) -> int:
     from surefoot.tools.live_run import live_run
 
-    return live_run(deployment_file(call.config), call.set, call.seconds, call.plain, call.reload)
+    return live_run(deployment_file(call.config), call.set, call.seconds, call.plain, call.reload, call.record)
