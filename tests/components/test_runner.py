@@ -29,7 +29,7 @@ class Bus:
     def subscribe(self, key, receive):
         pass
 
-    serve = subscribe
+    serve = serve_each = subscribe
 
     def close(self):
         self.open = False
