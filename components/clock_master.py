@@ -5,10 +5,13 @@ from __future__ import annotations
 import gc
 import queue
 import time
+from collections import deque
+from functools import partial
+from math import ceil
 from threading import Event, Lock
 
 from surefoot.bus.session import Session
-from surefoot.bus.topics import PROCESSES, processes
+from surefoot.bus.topics import PROCESSES, TOPICS, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
 from surefoot.components.deployment_desk import serve_deployment
@@ -17,6 +20,7 @@ from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
 from surefoot.components.scheduler import NS, Executor, Scheduler
 from surefoot.components.stepper import Stepper
+from surefoot.components.topic_buffer import KEPT
 from surefoot.config.deployment import Deployment
 
 _LOOK_S = 0.2
@@ -32,7 +36,8 @@ class ClockMaster:
     """Steps io here and every other process over the bus, in the scheduler's order.
 
     Simulated time does not pass a release + budget until that process has answered: a slow or restarted
-    process slows time and changes nothing else.
+    process slows time and changes nothing else. The last messages of every topic are kept here, for readers that
+    come late or again: their writer may be gone.
     """
 
     def __init__(self, deployment: Deployment, boot: int = 0, parent: int = 0):
@@ -43,12 +48,21 @@ class ClockMaster:
         table = processes(deployment.mpc.profile)
         self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)
         self._remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
-        executors: dict[str, Executor] = {"io": _HostedExecutor(self._stepper), **self._remote}
+        executors: dict[str, Executor] = {"io": _HostedExecutor(self._stepper, self), **self._remote}
         self.scheduler = Scheduler(executors, table)
+        # A process that is released again reads what was visible then: time has gone on by its budget at the most.
+        budget_s = max(process.budget_s for process in table.values())
+        self._kept: dict[str, deque[bytes]] = {
+            key: deque(maxlen=KEPT + ceil(topic.rate_hz * budget_s))
+            for key, topic in TOPICS.items()
+            if topic.writer in PROCESSES
+        }
 
     def run(self) -> int:
         """Until told to stop or the parent is gone; returns the exit code."""
         self._stepper.connect()
+        for key, kept in self._kept.items():
+            self.session.serve(f"{clock.KEPT}/{key}", partial(list, kept))
         gc.collect()
         gc.freeze()
         self._stepper.health.life = Life.IDLE
@@ -82,6 +96,12 @@ class ClockMaster:
             raise MasterStopped
         self._stepper.tell(self.scheduler.t_ns / NS)
 
+    def keep(self, sent: dict[str, list[bytes]]) -> dict[str, int]:
+        """Keep what a step has published; how many messages that are on each topic."""
+        for key, payloads in sent.items():
+            self._kept[key].extend(payloads)
+        return {key: len(payloads) for key, payloads in sent.items()}
+
     def waiting(self, reason: str) -> None:
         """Say in words why time stands still."""
         self._stepper.health.reason = reason
@@ -106,10 +126,10 @@ class RemoteExecutor:
         self._pending: tuple[int, dict[str, int]] | None = None
         self._resume = clock.Resume({}, b"")
         self._new_there = False
-        self._done: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        self._done: queue.SimpleQueue[tuple[clock.Done, dict[str, int]]] = queue.SimpleQueue()
         self._ready = Event()
         self._lock = Lock()
-        master.session.subscribe(f"{clock.DONE}/{name}", lambda key, payload: self._done.put(payload))
+        master.session.subscribe(f"{clock.DONE}/{name}", lambda key, payload: self._on_done(payload))
         master.session.subscribe(f"{clock.HELLO}/{name}", lambda key, payload: self._on_hello())
 
     def wait_ready(self) -> None:
@@ -131,7 +151,7 @@ class RemoteExecutor:
         said = False
         while True:
             try:
-                done = clock.unpack_done(self._done.get(timeout=_LOOK_S))
+                done, counts = self._done.get(timeout=_LOOK_S)
             except queue.Empty:
                 waited = time.monotonic() - begun
                 if waited > _WORTH_SAYING_S:
@@ -146,7 +166,12 @@ class RemoteExecutor:
             self._pending = None
         if said:
             self._master.waiting("")
-        return done.counts
+        return counts
+
+    def _on_done(self, payload: bytes) -> None:
+        """Kept at once: who comes up now asks for what has been sent already and is not visible yet."""
+        done = clock.unpack_done(payload)
+        self._done.put((done, self._master.keep(done.sent)))
 
     def _on_hello(self) -> None:
         """The process is up, or up again: what it has not answered is asked once more."""
@@ -165,12 +190,12 @@ class RemoteExecutor:
 class _HostedExecutor:
     """io itself, in the master's process, on the same terms as the others."""
 
-    def __init__(self, stepper: Stepper):
-        self._stepper = stepper
+    def __init__(self, stepper: Stepper, master: ClockMaster):
+        self._stepper, self._master = stepper, master
 
     def release(self, t_ns: int, visible: dict[str, int]) -> None:
         self._stepper.read_visible(visible)
         self._stepper.step(t_ns / NS)
 
     def collect(self) -> dict[str, int]:
-        return self._stepper.publish()
+        return self._master.keep(self._stepper.publish())

@@ -13,7 +13,7 @@ RELEASE, DONE, HELLO = "clock/release", "clock/done", "clock/hello"
 """Key prefixes; the process's name follows. HELLO: the process is ready, or ready again after a restart."""
 
 KEPT = "kept"
-"""Key prefix; a topic's key follows. Its writer answers with the last messages of that topic."""
+"""Key prefix; a topic's key follows. The process of io answers with the last messages of that topic."""
 
 REQUEST = "operator/request"
 """Key on which people's commands reach the process of io, which dates and numbers them."""
@@ -41,12 +41,12 @@ class Done:
 
     Attributes:
         t_ns: the release it answers [ns].
-        counts: how many messages it published on each topic.
+        sent: the messages it published on each topic, in bytes.
         snapshot: the component's memory after it, packed; empty if it is not active yet.
     """
 
     t_ns: int
-    counts: dict[str, int]
+    sent: dict[str, list[bytes]]
     snapshot: bytes
 
 
@@ -63,7 +63,7 @@ def unpack_release(payload: bytes) -> tuple[int, dict[str, int], Resume | None]:
 
 def pack_done(done: Done) -> bytes:
     """Bytes of a done token."""
-    return msgpack.packb([done.t_ns, done.counts, done.snapshot])
+    return msgpack.packb([done.t_ns, done.sent, done.snapshot])
 
 
 def unpack_done(payload: bytes) -> Done:

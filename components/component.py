@@ -70,15 +70,24 @@ class Outbox:
         self._send = send
         self._boot = boot
 
-    def continue_from(self, counts: dict[str, int]) -> None:
-        """Number on from how many messages each topic has had: a restarted process has predecessors."""
-        for key in self._seq:
-            self._seq[key] = counts.get(key, 0)
+    @property
+    def boot(self) -> int:
+        """Of the messages."""
+        return self._boot
 
     @property
-    def next_seq(self) -> dict[str, int]:
-        """Number of the next message on each output."""
+    def sent(self) -> dict[str, int]:
+        """How many messages each topic has had."""
         return dict(self._seq)
+
+    def continue_from(self, counts: dict[str, int], boot: int | None = None) -> None:
+        """Number on from how many messages each topic has had: a restarted process has predecessors.
+
+        With a predecessor's `boot` no reader can tell the two apart.
+        """
+        for key in self._seq:
+            self._seq[key] = counts.get(key, 0)
+        self._boot = self._boot if boot is None else boot
 
     def publish(self, key: str, message: Message) -> None:
         """Publish on one of the component's outputs.

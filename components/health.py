@@ -25,8 +25,10 @@ class Health:
     Attributes:
         life, reason: what the process is doing, and in words why nothing moves.
         lost: an input that did not arrive; empty when all did.
+        note: in words what is to be known of the process's start; mostly empty.
         overruns: deadlines missed.
         t: run's time of the last status [s].
+        boot: of the process's messages.
     """
 
     def __init__(
@@ -38,10 +40,10 @@ class Health:
         journal: Journal,
         boot: int = 0,
     ):
-        self.life, self.reason, self.lost = Life.INIT, "", ""
+        self.life, self.reason, self.lost, self.note = Life.INIT, "", "", ""
         self.overruns = self.steps = 0
         self.t = 0.0
-        self._component, self._session, self._buffers, self._boot = component, session, buffers, boot
+        self._component, self._session, self._buffers, self.boot = component, session, buffers, boot
         self._journal = journal
         self._nominal_hz = nominal_hz(process)
         self._recent: deque[float] = deque(maxlen=2000)
@@ -68,7 +70,7 @@ class Health:
             t=t,
             valid=True,
             seq=self._seq,
-            boot=self._boot,
+            boot=self.boot,
             process=self._component.name,
             life=self.life.value,
             reason=self._words(),
@@ -92,5 +94,5 @@ class Health:
     def _words(self) -> str:
         """All there is to say, the gravest first."""
         bad = f"dropped {self._buffers.last_error}" if self._buffers.bad else ""
-        said = self.reason, self._component.trouble, self.lost, bad
+        said = self.reason, self._component.trouble, self.lost, bad, self.note
         return "; ".join(words for words in said if words)

@@ -73,7 +73,7 @@ class LocalExecutor:
     def _note_checkpoint(self, journal: Journal, fresh: bool = False) -> None:
         state = b"" if fresh else pack_snapshot(self.component.snapshot())
         latest = {key: self.inbox.latest(key) for key in self.component.inputs}
-        journal.note_checkpoint(self._t, state, latest, self._outbox.next_seq, self.active, fresh)
+        journal.note_checkpoint(self._t, state, latest, self._outbox.sent, self._outbox.boot, self.active, fresh)
 
 
 class LocalBus:

@@ -14,6 +14,7 @@ from surefoot.components.deployment_desk import serve_deployment
 from surefoot.components.operator_desk import OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
+from surefoot.components.relief import GIVE, SHOW, Relief
 from surefoot.components.scheduler import NS
 from surefoot.components.stepper import Stepper
 from surefoot.config.deployment import Deployment
@@ -28,8 +29,16 @@ class Runner:
 
     hub = False
 
-    def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0):
-        """`boot` counts the restarts of this process; `parent` is the supervisor's process id, 0 the starter's."""
+    def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0, relieves: bool = False):
+        """One process.
+
+        Args:
+            deployment: the run's settings.
+            name: of its component.
+            boot: counts the restarts of this process.
+            parent: the supervisor's process id, 0 the starter's.
+            relieves: on the monotonic clock, take over from the process that runs under this name.
+        """
         self._end = ProcessEnd(parent)
         self._deployment, self._name = deployment, name
         self._process = processes(deployment.mpc.profile)[name]
@@ -37,9 +46,14 @@ class Runner:
         self._session = Session(deployment.run.namespace, hub=self.hub)
         component = component_class(name)(deployment)
         self._stepper = Stepper(component, self._session, self._process, boot, simulated=not self._monotonic)
+        self._relief, self._relieves, self._relieved = Relief(self._session, name), relieves, False
 
     def run(self) -> int:
-        """Until the end; returns the exit code."""
+        """Until the end; returns the exit code.
+
+        Raises:
+            BusError, ForeignMemory: the process that is to be relieved does not answer, or is of other code.
+        """
         health = self._stepper.health
         self._stepper.component.warm_up()
         gc.collect()
@@ -47,6 +61,8 @@ class Runner:
         self._stepper.connect()  # a process that is busy with itself would hold up the bus
         health.life = Life.IDLE
         try:
+            if self._relieves:
+                self._take_over()
             self._follow()
         finally:
             self._stepper.close()
@@ -59,6 +75,8 @@ class Runner:
         In simulated time there is nothing to let go of: time stands still, and a process that takes this one's
         place goes on where it stood.
         """
+        if self._monotonic:
+            self._relief.expect()
         try:
             if not self._monotonic:
                 self._follow_simulated_time()
@@ -70,8 +88,26 @@ class Runner:
             self._stepper.fail(error)
             raise
         finally:
-            if self._monotonic:
+            if self._relieved:
+                time.sleep(_LEAVE_S)
+            elif self._monotonic:
                 self._let_go()
+
+    def _take_over(self) -> None:
+        """Take the place of the process that runs under this name, which then ends."""
+        self._relief.listen()
+        self._stepper.rehearse(self._relief.ask(SHOW))
+        time.sleep(self._stepper.take_over(self._relief.ask(GIVE), self._live_t()))
+
+    def _answer_successor(self) -> None:
+        """Show where this process stands to one that asks, or leave it its place for good."""
+        while (asked := self._relief.asked()) and not self._relieved:
+            self._relief.answer(self._stepper.place())
+            self._relieved = asked == GIVE
+
+    @property
+    def _goes_on(self) -> bool:
+        return not (self._end.due or self._relieved)
 
     def _let_go(self) -> None:
         """Deactivate at the process's rate, for a second at the most."""
@@ -120,7 +156,7 @@ class Runner:
         """Absolute deadlines on the monotonic clock; after an overrun the missed ones are skipped and counted."""
         period = 1.0 / self._process.rate_hz
         deadline = time.monotonic()
-        while not self._end.due:
+        while self._goes_on:
             deadline += period
             wait = deadline - time.monotonic()
             if wait > 0.0:
@@ -134,16 +170,19 @@ class Runner:
     def _follow_trigger(self) -> None:
         """Step on every n-th message of the trigger; releases that came during a step are skipped and counted."""
         trigger, every = self._process.trigger, self._process.every
-        seen = 0
-        while not self._end.due:
+        seen, begun = 0, False
+        while self._goes_on:
             due = (self._stepper.buffers.wait_arrivals(trigger, seen + every, _LOOK_S) - seen) // every
             if due:
                 seen += due * every
-                if nominal_hz(self._process):  # requests, which come on events, are all served in one step
+                # Requests, which come on events, are all served in one step.
+                if begun and nominal_hz(self._process):
                     self._stepper.health.overruns += due - 1
+                begun = True
                 self._live_step()
             else:
                 self._stepper.tell(self._live_t())
+                self._answer_successor()
 
     def _live_step(self) -> None:
         self._stepper.read_all()
@@ -151,6 +190,7 @@ class Runner:
         self._stepper.step(t)
         self._stepper.publish()
         self._stepper.tell(t)
+        self._answer_successor()
 
     def _live_t(self) -> float:
         return time.monotonic() - self._deployment.run.epoch_s

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections import deque
-from functools import partial
+from math import inf
 
-from surefoot.bus.codec import check, encode
+from surefoot.bus.codec import check, decode, encode
 from surefoot.bus.message import Message
 from surefoot.bus.recording.journal import LOG, Journal
 from surefoot.bus.session import Session
@@ -14,7 +13,9 @@ from surefoot.bus.topics import TOPICS, Process
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Component, Inbox, Life, Outbox
 from surefoot.components.health import Health
-from surefoot.components.topic_buffer import KEPT, TopicBuffers
+from surefoot.components.memory import ForeignMemory
+from surefoot.components.relief import Place
+from surefoot.components.topic_buffer import TopicBuffers
 
 _INPUT_TIMEOUT_S = 10.0
 _LEAVE_S = 0.1
@@ -52,34 +53,34 @@ class Stepper:
         self._session = session
         self._inbox = Inbox(component.inputs)
         self._outgoing: list[tuple[str, Message]] = []
-        self._kept: dict[str, deque[bytes]] = {key: deque(maxlen=KEPT) for key in component.outputs}
         self._lossless = {key: simulated or not TOPICS[key].rate_hz for key in component.outputs}
         self._boot = boot
         self._active = self._restored = False
         self._t = 0.0
 
     def connect(self) -> None:
-        """Begin to listen to the inputs, and keep the last outputs for readers that come late."""
+        """Begin to listen to the inputs."""
         if self._boot == 0:
             self._begin_journal()
         self.buffers.connect(self._session)
-        for key, kept in self._kept.items():
-            self._session.serve(f"{clock.KEPT}/{key}", partial(list, kept))
         self._session.serve_each(f"{LOG}/{self.component.name}", self.journal.kept)
 
     def resume(self, resume: clock.Resume, visible: dict[str, int]) -> None:
         """Take the place of a process that is gone, where its last finished step left it."""
-        kept = {key: self._session.ask(f"{clock.KEPT}/{key}") for key in self.component.inputs if visible.get(key)}
+        kept = {key: self._kept(key) for key in self.component.inputs if visible.get(key)}
         self.buffers.resume(resume.had, visible, kept, self._inbox)
         self.outbox.continue_from(visible)
         if resume.snapshot:
-            self.component.restore(clock.unpack_snapshot(resume.snapshot))
-            self._active = self._restored = True
+            try:
+                self.component.restore(clock.unpack_snapshot(resume.snapshot))
+                self._active = self._restored = True
+            except ForeignMemory as error:  # of code that has changed since
+                self.health.note = f"began anew: {error}"
 
     def read_visible(self, visible: dict[str, int]) -> None:
         """Take exactly the messages that are visible in simulated time."""
         self._begin_journal()
-        self.health.lost = self.buffers.deliver_visible(visible, self._inbox, _INPUT_TIMEOUT_S)
+        self.health.lost = self.buffers.deliver_visible(visible, self._inbox, _INPUT_TIMEOUT_S, self._kept)
 
     def read_all(self) -> None:
         """Take everything that has arrived."""
@@ -88,9 +89,8 @@ class Stepper:
 
     def step(self, t: float) -> None:
         """Activate or step at time `t` [s] on what was read."""
-        begun = time.perf_counter()
+        begun, self._t = time.perf_counter(), t
         component, health = self.component, self.health
-        self._t = t
         self.journal.note_step(t, [self._inbox.new(key) for key in component.inputs])  # also of one that fails
         if not self._active:
             self._active = component.activate(t, self._inbox)
@@ -112,25 +112,72 @@ class Stepper:
             self.health.life = Life.IDLE if done else Life.DEACTIVATING
         return done
 
-    def publish(self) -> dict[str, int]:
-        """Send what the step published; how many messages on each topic."""
-        counts: dict[str, int] = {}
+    def publish(self) -> dict[str, list[bytes]]:
+        """Send what the step published; the bytes of the messages on each topic."""
+        sent: dict[str, list[bytes]] = {}
         for key, message in self._outgoing:
             payload = encode(message)
-            self._kept[key].append(payload)
             self._session.put(key, payload, self._lossless[key])
             self.journal.note_message(self._t, key, message.seq, payload)
-            counts[key] = counts.get(key, 0) + 1
+            sent.setdefault(key, []).append(payload)
         self._outgoing.clear()
         if self.component.remembers and self.journal.checkpoint_is_due(self._t):
             self._note_checkpoint()
         if self.journal.batch_is_due():
             self._log()
-        return counts
+        return sent
 
     def snapshot(self) -> bytes:
         """What the component remembers after its last step; empty while it is not active."""
         return clock.pack_snapshot(self.component.snapshot()) if self._active else b""
+
+    def place(self) -> Place:
+        """Where this process stands after its last step."""
+        latest = {key: self._inbox.latest(key) for key in self.component.inputs}
+        return Place(
+            t=self._t,
+            boot=self.health.boot,
+            sent=self.outbox.sent,
+            had=self.buffers.had,
+            latest={key: encode(message) for key, message in latest.items() if message is not None},
+            snapshot=self.snapshot(),
+        )
+
+    def rehearse(self, place: Place) -> None:
+        """See that this process can take over from a place; its component is as before.
+
+        Raises:
+            ForeignMemory: it cannot: what stands there is of other code.
+        """
+        blank = clock.pack_snapshot(self.component.snapshot())
+        if place.snapshot:
+            self.component.restore(clock.unpack_snapshot(place.snapshot))
+        self.component.restore(clock.unpack_snapshot(blank))
+
+    def take_over(self, place: Place, t: float) -> float:
+        """Go on at time `t` [s] from a place that another process has left.
+
+        As long as nobody finds its predecessor's messages stale, no reader can tell the two apart. With an older
+        memory, or none, this process begins anew.
+
+        Returns:
+            How long it must keep silent first, for everybody to notice that its predecessor is gone [s].
+        """
+        for key, payload in place.latest.items():
+            self._inbox.deliver(key, decode(TOPICS[key].message, payload))
+        self._inbox.clear_new()
+        self.buffers.take_over(place.had)
+        age = t - place.t
+        limit = min((TOPICS[key].stale_after_s or inf for key in self.component.outputs), default=inf)
+        if place.snapshot and age <= limit:
+            self.component.restore(clock.unpack_snapshot(place.snapshot))
+            self.outbox.continue_from(place.sent, place.boot)
+            self.health.boot, self._active = place.boot, True
+            self._restored, self._t = True, place.t
+            return 0.0
+        if place.snapshot:
+            self.health.note = f"began anew: its memory was {age:.3f} s old, limit {limit:g} s"
+        return limit if limit < inf else 0.0
 
     def tell(self, t: float, now: bool = False) -> None:
         """Publish the health if it is time to, or `now`."""
@@ -155,7 +202,9 @@ class Stepper:
     def _note_checkpoint(self, fresh: bool = False) -> None:
         state = b"" if fresh else clock.pack_snapshot(self.component.snapshot())
         latest = {key: self._inbox.latest(key) for key in self.component.inputs}
-        self.journal.note_checkpoint(self._t, state, latest, self.outbox.next_seq, self._active, fresh)
+        self.journal.note_checkpoint(
+            self._t, state, latest, self.outbox.sent, self.outbox.boot, self._active, fresh
+        )
 
     def _log(self, last: bool = False) -> bool:
         """Hand over what the journal holds; whether that was anything."""
@@ -164,6 +213,10 @@ class Stepper:
             # Never held up by a recorder: it asks again for what it has missed.
             self._session.put(f"{LOG}/{self.component.name}", payload, lossless=False)
         return payload is not None
+
+    def _kept(self, key: str) -> list[bytes]:
+        """The last messages of a topic, from who keeps them."""
+        return self._session.ask(f"{clock.KEPT}/{key}")
 
     def _send(self, key: str, message: Message) -> None:
         self._outgoing.append((key, check(message)))

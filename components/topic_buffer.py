@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from threading import Condition
 
 from surefoot.bus.codec import decode
@@ -17,7 +17,13 @@ KEPT = 32
 """Messages of a topic that its writer keeps for a reader that comes late, or again."""
 
 _WINDOW = 256  # bytes wait for a reader at the most; a number further ahead than this is not the writer's
+_ON_ITS_WAY_S = 0.3
 _MISFITS = 8  # so many messages out of sequence in a row are a new sequence
+
+
+def _nobody(key: str) -> list[bytes]:
+    """Nobody keeps any message of a topic."""
+    return []
 
 
 class _Topic:
@@ -102,12 +108,26 @@ class TopicBuffers:
                 if message is not None and self._in_sequence(key, topic, message):
                     inbox.deliver(key, message)
 
+    @property
+    def had(self) -> dict[str, tuple[int, int]]:
+        """Of each topic the boot of the last message that was handed over, and the sequence number of the next."""
+        return {key: (topic.boot, topic.next) for key, topic in self._topics.items()}
+
+    def take_over(self, had: dict[str, tuple[int, int]]) -> None:
+        """Read on from where another reader stood; what has arrived before that is nothing new."""
+        for key, (boot, following) in had.items():
+            topic = self._topics[key]
+            topic.boot, topic.next, topic.first = boot, following, following
+
     def _in_sequence(self, key: str, topic: _Topic, message: Message) -> bool:
         """Whether a message follows the last one; a restarted writer, or a long row of misfits, begins anew."""
+        if message.boot == topic.boot and message.seq < topic.first:
+            return False
         ahead = message.seq - topic.next
         follows = message.boot > topic.boot or (message.boot == topic.boot and ahead >= 0)
         if follows or topic.misfits >= _MISFITS:
             topic.boot, topic.next, topic.misfits = message.boot, message.seq + 1, 0
+            topic.first = 0
             return True
         topic.misfits += 1
         self._drop(f"{key}: message {message.seq} is out of place, next is {topic.next}: a second publisher?")
@@ -126,19 +146,19 @@ class TopicBuffers:
         """
         for key, topic in self._topics.items():
             seen = had.get(key, 0)
-            for payload in kept.get(key, ()):
-                message = self._decode(key, payload)
-                if message is not None and message.seq >= seen - 1:
-                    topic.early[message.seq] = message, hash(payload)
+            self._place(key, topic, kept.get(key, ()), seen - 1)
             oldest = min(topic.early, default=visible.get(key, 0))
             topic.jump(max(seen - 1, min(oldest, visible.get(key, 0)), 0))
             self._take(key, topic, seen, inbox)
         inbox.clear_new()
 
-    def deliver_visible(self, visible: dict[str, int], inbox: Inbox, timeout_s: float) -> str:
+    def deliver_visible(
+        self, visible: dict[str, int], inbox: Inbox, timeout_s: float, ask: Callable[[str], list[bytes]] = _nobody
+    ) -> str:
         """Hand over exactly the messages with sequence numbers below the counts in `visible`.
 
-        Waits for those that are still on their way; one that does not come is skipped.
+        Waits for those that are still on their way, and asks for one that was sent before its reader was there;
+        one that does not come is skipped.
 
         Returns:
             What did not come in time, in words; empty when all is there.
@@ -151,7 +171,11 @@ class TopicBuffers:
             self._sort(key, topic)
             self._take(key, topic, wanted, inbox)
             while topic.next < wanted:
-                if not self._wait(topic, timeout_s):
+                missing = topic.next
+                if not self._wait(topic, _ON_ITS_WAY_S):
+                    self._place(key, topic, ask(key), topic.next)
+                    self._take(key, topic, wanted, inbox)
+                if topic.next == missing and not self._wait(topic, timeout_s):
                     lost = f"{key}: message {topic.next} of {wanted} did not arrive in {timeout_s:g} s"
                     topic.jump(min([wanted, *topic.early]))
                 self._sort(key, topic)
@@ -162,6 +186,7 @@ class TopicBuffers:
         """Hand over, in order and without a gap, what is here up to the count."""
         while topic.next < wanted and topic.next in topic.early:
             message, topic.had[topic.next] = topic.early.pop(topic.next)
+            topic.boot = max(topic.boot, message.boot)
             topic.had.pop(topic.next - KEPT, None)
             topic.next += 1
             inbox.deliver(key, message)
@@ -169,6 +194,15 @@ class TopicBuffers:
     def _wait(self, topic: _Topic, timeout_s: float) -> bool:
         with self._arrived:
             return self._arrived.wait_for(lambda: bool(topic.waiting), timeout_s)
+
+    def _place(self, key: str, topic: _Topic, kept: Iterable[bytes], least: int) -> None:
+        """Put what was kept for this reader in its place, from a sequence number on."""
+        for payload in kept:
+            message = self._decode(key, payload)
+            if message is not None and message.seq >= least:
+                there = topic.early.get(message.seq)
+                if there is None or message.boot > there[0].boot:
+                    topic.early[message.seq] = message, hash(payload)
 
     def _sort(self, key: str, topic: _Topic) -> None:
         """Decode what has arrived and put each message in its place, if that is free."""
@@ -185,6 +219,8 @@ class TopicBuffers:
                 topic.early[seq] = message, mark
             elif there is not None and message.boot > there[0].boot:
                 topic.early[seq] = message, mark  # the writer was restarted before its step was over
+            elif seq < topic.next and message.boot > topic.boot:
+                continue  # said before by a process that went when its step was over
             elif mark not in (topic.had.get(seq), there and there[1]):
                 self._drop(f"{key}: message {seq} is out of place, next is {topic.next}: a second publisher?")
 

@@ -16,13 +16,13 @@ from surefoot.bus.errors import BusError
 from surefoot.bus.session import Session, refuse_second_hub
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
-from surefoot.components.component import Component
-from surefoot.components.registry import component_class
 from surefoot.config.deployment import Deployment
 from surefoot.tools.guardian import Guardian
 from surefoot.tools.observer import Observer
 from surefoot.tools.other_process import OtherProcess
 from surefoot.tools.picture import Picture, SupportMargin, Watched
+from surefoot.tools.recording.recorder_process import NAME as RECORDER
+from surefoot.tools.recording.recorder_process import RecorderProcess
 from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.restart_queue import RestartQueue
 from surefoot.tools.supervisor_messages import (
@@ -40,7 +40,7 @@ MAX_CRASHES = 3
 """In simulation a process that ends by itself is started again as often as this."""
 
 HOLDS_ROBOT = ("estimator", "wbc", "fsm")
-"""On the monotonic clock these are restarted only while the robot is damped: they keep no memory of what they do.
+"""On the monotonic clock these are restarted only while the robot rests: a few milliseconds pass without them.
 The others may be at any time: the whole-body controller holds the base meanwhile."""
 
 ENDS_RUN = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -49,11 +49,8 @@ ENDS_RUN = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 KILL_AFTER_S = 3.0
 """A process that has not ended so long after it was told to is killed: a stop takes at most this for each."""
 
-RECORDER = "recorder"
-"""Name of its log; it is no process of the control chain, and the run goes on without it."""
-
-RECORDER_S = 10.0
-"""After the last process the recorder is given so long to write what it has."""
+RESTS = ("DAMP", "STAND", "STOPPED")
+"""States in which nothing moves."""
 
 _LOOK_S = 0.1
 _NOTICE_S = 0.5
@@ -98,7 +95,7 @@ class Supervisor:
         self._log_dir = Path(deployment.run.log_dir)
         self._sources = sources
         self._record = record
-        self._recorder: subprocess.Popen | None = None
+        self._recorder: RecorderProcess | None = None
         self.picture = Picture(simulated=self._simulated)
         self._session: Session | None = None
         self._observer: Observer | None = None
@@ -107,6 +104,7 @@ class Supervisor:
         self._queue = RestartQueue(self.picture, _UP_AGAIN_S)
         self._borrowers: dict[str, OtherProcess] = {}
         self._notice_due = 0.0
+        self._successors: dict[str, subprocess.Popen] = {}
 
     def run(self, until: Callable[[Picture], str], each: Callable[[Picture], None] = lambda picture: None) -> str:
         """Start everything; until `until(picture)` gives a reason to end, which is returned.
@@ -150,9 +148,13 @@ class Supervisor:
         with _deaf():
             self.picture.ending = self.picture.ending or "its supervisor was told to stop"
             self._tell()
+            for successor in self._successors.values():
+                _end(successor)
             for name in _STOP_ORDER:
                 self._end(self.picture.processes[name])
-            self._end_recorder()
+            if self._recorder is not None:
+                self._recorder.end()
+                self._note_recorder()
             if self._session is not None:
                 self._session.close()
                 self._session = None
@@ -161,16 +163,20 @@ class Supervisor:
                 self._guardian = None
 
     def restart(self, name: str, why: str = "on request") -> None:
-        """Restart one process; what was done, or why not, is noted in the picture."""
+        """Restart one process; what was done, or why not, is noted in the picture.
+
+        On the monotonic clock its successor is started first and takes its place when it is ready.
+        """
         if name not in PROCESSES:
             self.note(f"cannot restart {name!r}: there are {', '.join(PROCESSES)}")
         elif refusal := self._refusal(name):
             self.note(f"cannot restart {name}{refusal}")
-        else:
-            watched = self.picture.processes[name]
-            self._end(watched)
-            self._start_again(watched)
+        elif self._simulated:
+            self._start_anew(name)
             self.note(f"{name} restarted {why}")
+        else:
+            boot = self.picture.processes[name].restarts + 1
+            self._successors[name] = self._launch(name, boot, "--relieve")
 
     def lend(self, name: str, pid: int) -> None:
         """Leave a process to one that somebody runs by hand, until that one ends."""
@@ -198,10 +204,12 @@ class Supervisor:
             return ": it holds the robot and the bus; stop the run instead"
         if lent_to := self.picture.processes[name].lent_to:
             return f": it is lent to process {lent_to}; end that one"
-        if name in HOLDS_ROBOT and not self._simulated and self._state != "DAMP":
+        if name in self._successors:
+            return ": it is being restarted already"
+        if name in HOLDS_ROBOT and not self._simulated and self._state not in RESTS:
             return (
-                f" in state {self._state or 'unknown'}: in real time nothing waits for it, and it begins "
-                "without memory of what the robot does; `surefoot command sit` first, or end the run"
+                f" in state {self._state or 'unknown'}: in real time nothing waits for it; "
+                "`surefoot command stop` or sit first"
             )
         return ""
 
@@ -226,68 +234,41 @@ class Supervisor:
         if watched.lent_to:
             self._answer(watched.lent_to, Answer(watched.restarts))  # who borrowed it starts it
             return
+        watched.popen = self._launch(name, watched.restarts)
+
+    def _launch(self, name: str, boot: int, *words: str) -> subprocess.Popen:
         settings = [word for override in self._overrides for word in ("--set", override)]
         command = [sys.executable, "-P", "-m", "surefoot.tools.cli", "child", str(self._config), name, *settings]
-        command += ["--boot", str(watched.restarts), "--parent", str(os.getpid())]
+        command += ["--boot", str(boot), "--parent", str(os.getpid()), *words]
         with self._log_of(name).open("ab") as log:
             # A session of its own: Ctrl-C reaches the supervisor alone, which ends all in order.
-            watched.popen = subprocess.Popen(
+            popen = subprocess.Popen(
                 command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, start_new_session=True
             )
         if self._guardian is not None:
-            self._guardian.watch(watched.popen.pid, name)
+            self._guardian.watch(popen.pid, name)
+        return popen
 
     def _start_recorder(self, each: Callable[[Picture], None]) -> None:
         """Before the other processes: their first messages are to be there too."""
         if self._record is None:
             return
-        command = [sys.executable, "-P", "-m", "surefoot.tools.cli", "record", str(self._record)]
-        command += ["--namespace", self._deployment.run.namespace, "--parent", str(os.getpid())]
-        with self._log_of(RECORDER).open("wb") as log:
-            self._recorder = subprocess.Popen(
-                command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, start_new_session=True
-            )
+        namespace = self._deployment.run.namespace
+        self._recorder = RecorderProcess(self._record, namespace, self._log_of(RECORDER))
         if self._guardian is not None:
             self._guardian.watch(self._recorder.pid, RECORDER)
-        while "recording" not in self._log_of(RECORDER).read_text() and self._recorder.poll() is None:
+        while not self._recorder.ready:
             self._look(each)
             time.sleep(_LOOK_S)
 
-    def _end_recorder(self) -> None:
-        """It ends by itself when every process has; what it could not record is noted."""
-        if self._recorder is None:
-            return
-        try:
-            self._recorder.wait(RECORDER_S)
-        except subprocess.TimeoutExpired:
-            self._recorder.terminate()
-            try:
-                self._recorder.wait(KILL_AFTER_S)
-            except subprocess.TimeoutExpired:
-                self._recorder.kill()
-                self._recorder.wait()
-        self._note_recorder()
-
     def _note_recorder(self) -> None:
         """Say how the recorder has ended."""
-        if self._recorder is None or (code := self._recorder.poll()) is None:
-            return
-        self._recorder = None
-        lines = self._log_of(RECORDER).read_text(errors="replace").strip().splitlines()
-        if code == 0:
-            self.note(lines[-1])
-        else:
-            how = f"signal {-code}" if code < 0 else lines[-1] if lines else f"exit code {code}"
-            self.note(
-                f"the recorder has ended: {how}; see {self._log_of(RECORDER)}, `surefoot info {self._record}`"
-            )
+        if self._recorder is not None and (words := self._recorder.obituary()):
+            self._recorder = None
+            self.note(words)
 
     def _start_again(self, watched: Watched) -> None:
         watched.restarts += 1
-        if self._simulated and watched.name == "fsm" and component_class("fsm").snapshot is Component.snapshot:
-            # It keeps no memory of what the robot does, and would begin by damping it. In real time it is damped.
-            self._command("stand")
-            self.note("fsm has lost its place and stands the robot: `surefoot command forward` goes on")
         self._start(watched.name)
 
     def _end(self, watched: Watched) -> None:
@@ -298,16 +279,29 @@ class Supervisor:
             borrower.signal(signal.SIGTERM)
             borrower.wait(KILL_AFTER_S)
             borrower.close()
-        popen = watched.popen
-        if popen is None or popen.poll() is not None:
-            return
-        popen.terminate()
-        popen.send_signal(signal.SIGCONT)  # one that is stopped can still end in order
-        try:
-            popen.wait(KILL_AFTER_S)
-        except subprocess.TimeoutExpired:
-            popen.kill()
-            popen.wait()
+        _end(watched.popen)
+
+    def _start_anew(self, name: str) -> None:
+        """End a process, then start it again."""
+        watched = self.picture.processes[name]
+        self._end(watched)
+        self._start_again(watched)
+
+    def _follow_successors(self) -> None:
+        """See which have taken the place of their predecessors, and which have failed to."""
+        for name, successor in list(self._successors.items()):
+            watched = self.picture.processes[name]
+            if watched.exit_code == 0:
+                watched.popen, watched.restarts = successor, watched.restarts + 1
+                self.note(f"{name} restarted on request")
+            elif (code := successor.poll()) is None:
+                continue
+            elif name in HOLDS_ROBOT and self._state != "DAMP":
+                self.note(f"{name} goes on as it was: its successor failed; {self._obituary(name, code)}")
+            else:
+                self._start_anew(name)
+                self.note(f"{name} restarted on request, without its memory; {self._obituary(name, code)}")
+            del self._successors[name]
 
     def _reconcile(self) -> str:
         """Obey requests; start again what ended; a reason to end the run, or ""."""
@@ -321,6 +315,7 @@ class Supervisor:
                 self.lend(words[0], int(words[1]))
             else:
                 self.note(f"not understood: {' '.join([verb, *words])[:80]!r}")
+        self._follow_successors()
         if reason := self._bury() or self._take_back():
             return reason
         self._note_recorder()
@@ -466,6 +461,19 @@ class Supervisor:
         if self._session is None:
             raise BusError(f"cannot give the command {command!r}: the bus is open only while `run` goes on")
         self._session.put(clock.REQUEST, command.encode())
+
+
+def _end(popen: subprocess.Popen | None) -> None:
+    """End a process, by force if it does not."""
+    if popen is None or popen.poll() is not None:
+        return
+    popen.terminate()
+    popen.send_signal(signal.SIGCONT)  # one that is stopped can still end in order
+    try:
+        popen.wait(KILL_AFTER_S)
+    except subprocess.TimeoutExpired:
+        popen.kill()
+        popen.wait()
 
 
 @contextmanager

@@ -114,7 +114,8 @@ class Journal:
         t: float,
         state: bytes,
         latest: Mapping[str, Message | None],
-        next_seq: Mapping[str, int],
+        sent: Mapping[str, int],
+        boot: int,
         active: bool,
         fresh: bool = False,
     ) -> None:
@@ -124,7 +125,8 @@ class Journal:
             t: time of its last step [s].
             state: its packed snapshot.
             latest: the newest message of each input.
-            next_seq: number of the next message on each output.
+            sent: how many messages each output has had.
+            boot: of the messages it publishes.
             active: it steps already.
             fresh: the component is as it was made.
         """
@@ -143,8 +145,9 @@ class Journal:
             inputs=tuple(payloads),
             latest=np.frombuffer(b"".join(payloads.values()), np.uint8),
             latest_size=np.array([len(each) for each in payloads.values()], np.int64),
-            outputs=tuple(next_seq),
-            next_seq=np.array(list(next_seq.values()), np.int64),
+            outputs=tuple(sent),
+            next_seq=np.array(list(sent.values()), np.int64),
+            writes_boot=boot,
         )
         self._note(f"{CHECKPOINT}/{self._process}", t, self._checkpoints, encode(checkpoint))
         self._checkpoints += 1

@@ -40,6 +40,7 @@ class Checkpoint(Message):
     latest_size: np.ndarray = array(-1, dtype="int64", doc="bytes of each")
     outputs: tuple[str, ...] = names("topics that it publishes")
     next_seq: np.ndarray = array(-1, dtype="int64", doc="number of the next message on each")
+    writes_boot: int = integer("`boot` of these messages: one that has relieved another goes on with its")
 
     def latest_payloads(self) -> dict[str, bytes]:
         """The encoded latest message of each topic in `inputs`."""

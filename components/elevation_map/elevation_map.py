@@ -81,8 +81,7 @@ class ElevationMap(Component):
 
     def restore(self, state: dict[str, Any]) -> None:
         self.map.restore(state)
-        if state["last"]:
-            self._last = decode(StateEstimate, state["last"])
+        self._last = decode(StateEstimate, state["last"]) if state["last"] else None
         if self._vision:
             self._match.restore(state["waiting"])
             self._refused, self._publish_t = state["refused"], state["publish_t"]

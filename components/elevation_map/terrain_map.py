@@ -98,6 +98,7 @@ class TerrainMap:
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take over what `snapshot` gave."""
+        self.clear()
         layers = self._torus.layers
         self._torus.first = np.array(state["first"])
         self.drift_m = float(state["drift"])

@@ -1,11 +1,13 @@
 """A component's inputs and outputs in a run, and what it remembered: it is pure, so it may run alone."""
 
+import ast
 from collections import deque
 from enum import Enum
 
 import numpy as np
 
 from surefoot.bus.codec import encode
+from surefoot.bus.message import Message
 from surefoot.components.clock_messages import pack_snapshot, unpack_snapshot
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.registry import component_class
@@ -17,13 +19,15 @@ class Taped(Component):
     Attributes:
         part: the component.
         tape: of every step its time, what was new in the inbox, and the bytes that were published.
-        memories: packed snapshots by the number of steps before them.
+        memories: packed snapshots by the number of steps before them, each taken when `remember` was set.
+        beside: what it held then beside its memory, as `carried` tells it.
     """
 
-    def __init__(self, part):
+    def __init__(self, part, scratch):
         super().__init__(part.deployment)
         self.part, self.name, self.inputs, self.outputs = part, part.name, part.inputs, part.outputs
-        self.tape, self.memories, self.remember = [], {}, False
+        self.tape, self.memories, self.beside, self.remember = [], {}, [], False
+        self._scratch = scratch
         self._waiting, self._said = [], []
         self._own = Outbox(part.outputs, lambda key, message: self._said.append((key, message)))
 
@@ -39,6 +43,7 @@ class Taped(Component):
     def step(self, t, inbox, outbox):
         if self.remember:
             self.memories[len(self.tape)] = pack_snapshot(self.part.snapshot())
+            self.beside.append(carried(self.part, self._scratch))
             self.remember = False
         self.part.step(t, inbox, self._own)
         before = [item for new in self._waiting for item in new]
@@ -110,10 +115,49 @@ def carried(thing, scratch, path=""):
 
 
 def _frozen(value):
+    if isinstance(value, Message):
+        return encode(value)
     if isinstance(value, np.ndarray):
         return value.dtype.str, value.shape, value.tobytes()
     if isinstance(value, (list, tuple, deque)):
         return [_frozen(each) for each in value]
     if isinstance(value, dict):
         return {key: _frozen(each) for key, each in value.items()}
-    return value if isinstance(value, (int, float, str, bytes, set, frozenset, type(None))) else type(value)
+    if isinstance(value, (set, frozenset)):
+        return sorted(value)
+    return value if isinstance(value, (int, float, str, bytes, type(None))) else type(value)
+
+
+_MUTATORS = {"append", "extend", "add", "remove", "discard", "clear", "pop", "update", "insert", "fill"}
+
+
+def written(source):
+    """Names of the attributes that methods in a module's source write to, other than on creation."""
+    names = set()
+    for function in ast.walk(ast.parse(source)):
+        if not isinstance(function, ast.FunctionDef) or function.name == "__init__":
+            continue
+        for node in ast.walk(function):
+            if isinstance(node, ast.Assign):
+                names |= {name for target in node.targets for name in _attributes(target)}
+            elif isinstance(node, (ast.AugAssign, ast.AnnAssign)):
+                names |= _attributes(node.target)
+            elif (
+                isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _MUTATORS
+            ):
+                names |= _attributes(node.func.value)
+    return names
+
+
+def _attributes(target):
+    if isinstance(target, (ast.Tuple, ast.List)):
+        return {name for each in target.elts for name in _attributes(each)}
+    while isinstance(target, (ast.Subscript, ast.Starred)):
+        target = target.value
+    return {target.attr} if isinstance(target, ast.Attribute) else set()
+
+
+def memory_names(thing):
+    """Names of all that an object and its parts remember."""
+    parts = [value for value in vars(thing).values() if hasattr(type(value), "memory")]
+    return {*thing.memory.names, *(name for part in parts for name in memory_names(part))}

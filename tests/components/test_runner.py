@@ -1,35 +1,52 @@
-"""A process on the monotonic clock lets go of the robot before it leaves, whatever ended it."""
+"""A process on the monotonic clock lets go of the robot before it leaves, unless another takes its place."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 
+import msgpack
 import numpy as np
 import pytest
 
 from surefoot.bus.codec import decode
+from surefoot.bus.errors import BusError
 from surefoot.bus.messages import JointCommand, ProcessStatus
 from surefoot.components import runner
+from surefoot.components.clock_messages import pack_snapshot
 from surefoot.components.component import Component
+from surefoot.components.memory import ForeignMemory, Memory
+from surefoot.components.relief import Place
 from surefoot.components.wbc.wbc import Wbc
 from surefoot.config.deployment import Deployment, Run
 
 
 class Bus:
-    """In place of the session: keeps what is published."""
+    """In place of the session: keeps what is published; asks and answers as a successor and a predecessor.
+
+    Attributes:
+        asks: what a successor asks as soon as it is listened for.
+        place: where the predecessor stands, if there is one.
+    """
+
+    asks, place = (), None
 
     def __init__(self, *args, **kwargs):
-        self.sent, self.open = [], True
+        self.sent, self.open, self.heard = [], True, {}
 
     def put(self, key, payload, lossless=True):
         assert self.open
         self.sent.append((key, payload))
+        if key.startswith("relief/ask/") and self.place is not None:
+            self.heard[key.replace("ask", "answer")]("", msgpack.packb(astuple(self.place)))
 
     def newest(self, key):
         return lambda: None
 
     def subscribe(self, key, receive):
-        pass
+        self.heard[key] = receive
+        for word in self.asks if key.startswith("relief/ask/") else ():
+            receive(key, word)
 
-    serve = serve_each = subscribe
+    def serve_each(self, key, answer):
+        pass
 
     def close(self):
         self.open = False
@@ -56,6 +73,7 @@ class Ramp(Component):
     """Needs three releases to let go."""
 
     name = "fsm"
+    memory = Memory("steps")
     needs, broken = 3, False
 
     def __init__(self, deployment):
@@ -87,9 +105,11 @@ def process(monkeypatch):
     monkeypatch.setattr(runner, "ProcessEnd", Told)
     monkeypatch.setattr("surefoot.components.health._PERIOD_S", 0.0)
 
-    def make(kind, clock="monotonic"):
+    def make(kind, relieves=False, **bus):
         monkeypatch.setattr(runner, "component_class", lambda name: kind)
-        return runner.Runner(replace(Deployment(), run=Run(clock=clock)), kind.name)
+        made = runner.Runner(replace(Deployment(), run=Run(clock="monotonic")), kind.name, relieves=relieves)
+        vars(made._session).update(bus)
+        return made
 
     return make
 
@@ -123,3 +143,48 @@ def test_the_last_command_of_the_whole_body_controller_brakes(process):
     last = decode(JointCommand, next(payload for key, payload in wbc._session.sent if key == "joint/command"))
     assert last.valid and not last.kp.any() and not last.tau.any()
     np.testing.assert_array_equal(last.kd, Deployment().hw.damping_kd)
+
+
+def answers(bus):
+    return [Place(*msgpack.unpackb(payload)) for key, payload in bus.sent if key == "relief/answer/fsm"]
+
+
+def test_its_place_is_shown_and_it_goes_on(process):
+    fsm = process(Ramp, asks=[b"show"])
+    fsm.run()
+    assert len(answers(fsm._session)) == 1 and fsm._stepper.component.steps == 3
+    assert fsm._stepper.component.ramped == 3
+
+
+def test_its_place_is_given_and_it_leaves_the_robot_as_it_is(process):
+    fsm = process(Ramp, asks=[b"show", b"give"])
+    assert fsm.run() == 0
+    component, bus = fsm._stepper.component, fsm._session
+    assert component.steps == 1 and component.ramped == 0 and not bus.open
+    assert [place.snapshot for place in answers(bus)] == [pack_snapshot({"steps": 1})] * 2
+
+
+def place(state, t=None):
+    return Place(t, 7, {}, {}, {}, pack_snapshot(state))
+
+
+def test_a_successor_goes_on_from_the_place_it_is_given(process):
+    fsm = process(Ramp, relieves=True, place=place({"steps": 40}, 1e9))
+    fsm.run()
+    assert fsm._stepper.component.steps == 43 and fsm._stepper.health.boot == 7
+
+
+def test_a_successor_that_cannot_take_over_asks_for_no_place(process):
+    fsm = process(Ramp, relieves=True, place=place({"strides": 40}, 1e9))
+    with pytest.raises(ForeignMemory, match="a memory of Ramp holds steps, not strides"):
+        fsm.run()
+    assert [payload for key, payload in fsm._session.sent if key == "relief/ask/fsm"] == [b"show"]
+    assert fsm._stepper.component.steps == fsm._stepper.component.ramped == 0 and not fsm._session.open
+
+
+def test_a_successor_without_a_predecessor_gives_up(process, monkeypatch):
+    monkeypatch.setattr("surefoot.components.relief._PATIENCE_S", 0.01)
+    fsm = process(Ramp, relieves=True)
+    with pytest.raises(BusError, match="fsm has not answered its successor"):
+        fsm.run()
+    assert fsm._stepper.component.ramped == 0

@@ -24,10 +24,10 @@ class Reader:
         for payload in payloads:
             self.buffers.put(KEY, payload)
 
-    def read(self, visible):
-        """Sequence numbers and boots handed over."""
+    def read(self, visible, kept=()):
+        """Sequence numbers and boots handed over; `kept` is there for who asks."""
         self.inbox.clear_new()
-        self.lost = self.buffers.deliver_visible({KEY: visible}, self.inbox, 0.01)
+        self.lost = self.buffers.deliver_visible({KEY: visible}, self.inbox, 0.01, lambda key: list(kept))
         return [(message.seq, message.boot) for message in self.inbox.new(KEY)]
 
 
@@ -59,6 +59,25 @@ def test_what_a_restarted_writer_says_replaces_what_was_not_visible_yet():
     reader = Reader()
     reader.put(packed(0), packed(1), packed(1, boot=1, t=1.0), packed(2, boot=1))
     assert reader.read(3) == [(0, 0), (1, 1), (2, 1)] and reader.buffers.bad == 0
+
+
+def test_what_was_sent_before_the_reader_was_there_is_asked_for():
+    reader = Reader()
+    reader.put(packed(0), packed(3))
+    assert [seq for seq, _ in reader.read(4, kept=[packed(seq) for seq in range(3)])] == [0, 1, 2, 3]
+    assert reader.read(5, kept=[packed(3)]) == [] and "message 4 of 5" in reader.lost
+    assert reader.buffers.bad == 0
+
+
+def test_a_step_that_was_over_and_is_said_again_is_no_second_publisher():
+    reader = Reader()
+    reader.put(packed(0), packed(1))
+    assert len(reader.read(2)) == 2
+    reader.put(packed(1, boot=1), packed(2, boot=1))
+    assert reader.read(3) == [(2, 1)] and reader.buffers.bad == 0
+    reader.put(packed(1, boot=1, t=5.0))
+    reader.read(3)
+    assert reader.buffers.bad == 1
 
 
 def test_a_new_reader_takes_the_place_of_the_old_one():

@@ -96,7 +96,7 @@ class Stack(Ear):
         self.config.write_text('[terrain]\nkind = "flat"\n')
         self.overrides = [f"run.namespace={self.namespace}", *overrides]
         self.deployment = load_deployment(self.config, self.overrides)
-        self.children = {}
+        self.children, self.boots = {}, {}
         self.start("io")
         super().__init__(self.namespace)
         for process in PROCESSES:
@@ -108,6 +108,17 @@ class Stack(Ear):
         settings = [word for override in self.overrides for word in ("--set", override)]
         command = [*CLI, "child", str(self.config), process, *settings, "--boot", str(boot)]
         self.children[process] = subprocess.Popen(command, stdout=self.log, stderr=self.log)
+
+    def restart(self, *names):
+        """End some processes at once, by force, and start them again; until they run."""
+        for name in names:
+            self.children[name].kill()
+        boots = {}
+        for name in names:
+            self.children[name].wait()
+            boots[name] = self.boots[name] = self.boots.get(name, 0) + 1
+            self.start(name, boots[name])
+        self.wait(lambda: all(self.status[name].boot == boot for name, boot in boots.items()))
 
     def begin(self, command):
         """Give a command while time still stands at 0, then let the last process come up."""

@@ -5,6 +5,9 @@ import signal
 
 import pytest
 
+from surefoot.bus.codec import decode
+from surefoot.bus.topics import TOPICS
+
 
 def test_every_process_but_io_is_restarted_while_the_robot_stands(supervised):
     live = supervised("run.command=stand")
@@ -14,18 +17,17 @@ def test_every_process_but_io_is_restarted_while_the_robot_stands(supervised):
         live.wait(lambda name=name: name in live.status and live.status[name].boot == 1)
         live.go_on(0.6)
         assert live.stands(), name
-    assert "fsm has lost its place and stands the robot" in live.said()
     assert not any(status.bad_messages for status in live.status.values())
 
 
 def test_a_controller_is_restarted_while_a_foot_is_in_the_air(supervised):
     live = supervised("run.command=forward")
     live.wait(lambda: live.t() > 2.0 and live.last("fsm/reference").state == "DETECT_CONTACT")
-    for name in ("mpc", "wbc"):
+    for name in ("wbc", "fsm"):
         live.command("restart", name)
         live.wait(lambda name=name: live.status[name].boot == 1)
-    live.go_on(0.6)
-    assert live.stands()
+    live.wait(lambda: live.last("fsm/reference").state == "PROBE")  # nothing has been forgotten
+    assert live.stands() and live.last("fsm/reference").boot == 1
 
 
 def test_a_process_that_crashes_is_restarted_three_times_and_then_ends_the_run(supervised):
@@ -53,6 +55,29 @@ def test_no_process_is_left_behind(supervised, how):
     live.wait_gone(pids)
     if how != signal.SIGKILL:
         assert live.run.returncode == 0 and "ended by the user" in live.said()
+
+
+def test_in_real_time_a_successor_takes_over_without_a_trace(supervised):
+    """Only the process id tells the two apart; one that comes too late on a busy machine tries again."""
+    live = supervised("run.clock=monotonic", "mpc.profile=light", 'run.command=""')
+    live.pids()
+    live.wait(lambda: "fsm" in live.status and live.status["fsm"].life == "RUN")
+    for name, key in (("fsm", "fsm/reference"), ("wbc", "joint/command")):
+        live.wait(lambda name=name: live.status[name].life == "RUN")
+        for _ in range(6):
+            before = live.status[name]
+            live.command("restart", name)
+            live.wait(lambda name=name, pid=before.pid: live.status[name].pid != pid)
+            if live.status[name].boot == before.boot:
+                break
+        assert live.status[name].boot == before.boot, live.said()
+        live.go_on(0.2)
+        with live.lock:
+            messages = [decode(TOPICS[key].message, payload) for payload in live.heard[key]]
+        numbers = [(message.boot, message.seq) for message in messages]
+        assert numbers == sorted(set(numbers))
+        assert f"{name} restarted on request" in live.log("supervisor")
+    assert not any(live.status[name].bad_messages for name in ("estimator", "wbc", "mpc", "io"))
 
 
 def test_in_real_time_a_process_that_crashes_ends_the_run(supervised):

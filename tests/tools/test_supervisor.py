@@ -16,60 +16,134 @@ from surefoot.tools.supervisor import Supervisor
 from surefoot.tools.supervisor_messages import Answer
 
 
+class Child:
+    """In place of a process."""
+
+    code = None
+
+    def poll(self):
+        return self.code
+
+    def terminate(self):
+        self.code = 0
+
+    def send_signal(self, number):
+        pass
+
+    def wait(self, timeout=None):
+        pass
+
+
+class Fake(Supervisor):
+    """Starts no process; `launched` is what it would have started."""
+
+    def __init__(self, *args):
+        super().__init__(*args)
+        self.launched = []
+        for watched in self.picture.processes.values():
+            watched.popen = Child()
+
+    def _launch(self, name, boot, *words):
+        self.launched.append((name, boot, *words))
+        return Child()
+
+    @property
+    def notes(self):
+        return self.picture.notes
+
+
 @pytest.fixture
-def restart(tmp_path, monkeypatch):
-    """Asks for a restart while the robot is in a state; what was started and commanded, and what was noted."""
+def restart(tmp_path):
+    """Asks for a restart while the robot is in a state; the supervisor."""
 
     def ask(name, state=None, clock="monotonic"):
         deployment = Deployment(run=Run(clock=clock, log_dir=str(tmp_path)))
-        supervisor, done = Supervisor(tmp_path / "flat.toml", [], deployment), []
-        monkeypatch.setattr(supervisor, "_start", done.append)
-        monkeypatch.setattr(supervisor, "_command", done.append)
+        supervisor = Fake(tmp_path / "flat.toml", [], deployment)
         if state is not None:
             supervisor.picture.reference = MotionReference(state=state)
         supervisor.restart(name)
-        return done, supervisor.picture.notes[-1]
+        return supervisor
 
     return ask
 
 
 @pytest.mark.parametrize("name", ["estimator", "wbc", "fsm"])
-@pytest.mark.parametrize("state", ["STAND", "PROBE", "SIT_DOWN", None])
-def test_in_real_time_what_holds_the_robot_is_not_restarted(restart, name, state):
-    done, said = restart(name, state)
-    assert done == []
-    assert f"cannot restart {name} in state {state or 'unknown'}" in said
-    assert "without memory" in said and "`surefoot command sit` first" in said
+@pytest.mark.parametrize("state", ["DETECT_CONTACT", "PROBE", "SIT_DOWN", None])
+def test_in_real_time_what_holds_the_robot_is_not_restarted_while_it_moves(restart, name, state):
+    supervisor = restart(name, state)
+    assert supervisor.launched == []
+    assert f"cannot restart {name} in state {state or 'unknown'}" in supervisor.notes[-1]
+    assert "`surefoot command stop` or sit first" in supervisor.notes[-1]
 
 
-@pytest.mark.parametrize("name", ["estimator", "wbc", "fsm"])
-def test_while_the_robot_is_damped_it_is_and_the_robot_stays_damped(restart, name):
-    assert restart(name, "DAMP") == ([name], f"{name} restarted on request")
+@pytest.mark.parametrize(
+    ("name", "state"), [("fsm", "STAND"), ("wbc", "STOPPED"), ("estimator", "DAMP"), ("mpc", "PROBE")]
+)
+def test_in_real_time_a_successor_is_ready_before_its_predecessor_leaves(restart, name, state):
+    supervisor = restart(name, state)
+    watched = supervisor.picture.processes[name]
+    before = watched.popen
+    assert supervisor.launched == [(name, 1, "--relieve")]
+    supervisor.restart(name)
+    assert (
+        supervisor.notes == [f"cannot restart {name}: it is being restarted already"]
+        and len(supervisor.launched) == 1
+    )
+    assert supervisor._reconcile() == "" and watched.popen is before and before.code is None
+    before.code = 0  # it has left its place
+    assert supervisor._reconcile() == "" and watched.popen is not before and watched.restarts == 1
+    assert supervisor.notes[-1] == f"{name} restarted on request"
+    watched.popen.code = 1
+    assert f"{name} ended with exit code 1" in supervisor._reconcile()
 
 
-@pytest.mark.parametrize("name", ["trajopt", "elevation_map", "mpc"])
-def test_what_the_robot_can_stand_without_is_restarted_at_any_time(restart, name):
-    assert restart(name, "PROBE") == ([name], f"{name} restarted on request")
+def test_a_process_goes_on_if_its_successor_fails(restart):
+    supervisor = restart("wbc", "STAND")
+    supervisor._successors["wbc"].code = 1
+    watched = supervisor.picture.processes["wbc"]
+    assert supervisor._reconcile() == "" and watched.exit_code is None and watched.restarts == 0
+    assert "wbc goes on as it was: its successor failed; wbc ended with exit code 1" in supervisor.notes[-1]
 
 
-def test_in_simulation_everything_but_io_is_and_the_state_machine_stands_the_robot(restart):
-    for name in ("estimator", "wbc", "mpc"):
-        assert restart(name, "PROBE", "simulated")[0] == [name]
-    assert restart("fsm", "PROBE", "simulated")[0] == ["stand", "fsm"]
-    done, said = restart("io", "DAMP")
-    assert done == [] and "holds the robot and the bus" in said
+@pytest.mark.parametrize(("name", "state"), [("mpc", "PROBE"), ("wbc", "DAMP")])
+def test_what_the_robot_can_be_without_is_then_started_anew(restart, name, state):
+    supervisor = restart(name, state)
+    before = supervisor.picture.processes[name].popen
+    supervisor._successors[name].code = 1
+    assert supervisor._reconcile() == "" and before.code == 0
+    assert supervisor.launched[1:] == [(name, 1)]
+    assert f"{name} restarted on request, without its memory" in supervisor.notes[-1]
+
+
+def test_a_stop_ends_a_successor_too(restart):
+    supervisor = restart("mpc", "STAND")
+    supervisor.stop()
+    assert supervisor._successors["mpc"].code == 0
+
+
+def test_in_simulation_everything_but_io_is(restart):
+    for name in ("estimator", "wbc", "mpc", "fsm"):
+        supervisor = restart(name, "PROBE", "simulated")
+        assert supervisor.launched == [(name, 1)] and supervisor.notes == [f"{name} restarted on request"]
+    supervisor = restart("io", "DAMP")
+    assert supervisor.launched == [] and "holds the robot and the bus" in supervisor.notes[-1]
 
 
 def test_a_stop_is_carried_through_whoever_presses_ctrl_c_again(tmp_path, monkeypatch):
     supervisor, ended = Supervisor(tmp_path / "flat.toml", [], Deployment()), []
 
-    def end(watched):
+    names = {}
+    for watched in supervisor.picture.processes.values():
+        watched.popen = Child()
+        names[watched.popen] = watched.name
+
+    def end(popen):
         os.kill(os.getpid(), signal.SIGINT)
         os.kill(os.getpid(), signal.SIGTERM)
         os.kill(os.getpid(), signal.SIGHUP)
-        ended.append(watched.name)
+        ended.append(names[popen])
 
-    monkeypatch.setattr(supervisor, "_end", end)
+    monkeypatch.setattr("surefoot.tools.supervisor._end", end)
     before = signal.getsignal(signal.SIGINT)
     supervisor.stop()
     assert sorted(ended) == sorted(PROCESSES) and ended[-1] == "io"

@@ -39,6 +39,9 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--namespace", default="", help="that of the run; the deployment's if left out")
     parser.add_argument("--boot", type=int, default=0, help="how often this process has been restarted")
     parser.add_argument("--parent", type=int, default=0, help="process id that must live on; 0 the caller's")
+    parser.add_argument(
+        "--relieve", action="store_true", help="take over from the running process (monotonic clock only)"
+    )
     parser.set_defaults(run=_run)
 
 
@@ -56,7 +59,7 @@ def _run(call: argparse.Namespace) -> int:
     namespace = deployment.run.namespace
     run = None if call.parent else supervised_run(namespace)
     if run is None:
-        return _work(deployment, call.name, call.boot, call.parent)
+        return _work(deployment, call.name, call.boot, call.parent, call.relieve)
     if run.config != str(file.resolve()):
         raise CallError(
             f"the run with namespace {namespace!r} is of {run.config}: `surefoot child {run.config} {call.name}`"
@@ -65,12 +68,12 @@ def _run(call: argparse.Namespace) -> int:
     return run_borrowed(namespace, call.name, run, lambda boot: _work(deployment, call.name, boot, 0))
 
 
-def _work(deployment, name: str, boot: int, parent: int) -> int:
+def _work(deployment, name: str, boot: int, parent: int, relieve: bool = False) -> int:
     from surefoot.components.clock_master import ClockMaster
     from surefoot.components.runner import HubRunner, Runner
 
     if name != "io":
-        return Runner(deployment, name, boot, parent).run()
+        return Runner(deployment, name, boot, parent, relieve).run()
     if deployment.run.clock == "simulated":
         return ClockMaster(deployment, boot, parent).run()
     return HubRunner(deployment, "io", boot, parent).run()

@@ -7,10 +7,18 @@ import argparse
 from surefoot.tools.commands.call import CallError
 from surefoot.tools.commands.say import say_on_bus
 
+_RESTART = """
+Start one process of a running stack again; it goes on where it stood. With the simulated clock at any time. On the
+monotonic clock another process is made ready first and then takes its place, which for estimator, wbc and fsm
+needs a robot that stands, has stopped or is damped. io cannot be restarted: it holds the robot and the bus.
+"""
+
 
 def add(commands: argparse._SubParsersAction) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser("restart", help="restart one process of a running stack")
+    parser = commands.add_parser(
+        "restart", help="restart one process of a running stack", description=" ".join(_RESTART.split())
+    )
     parser.add_argument("name")
     parser.add_argument("--namespace", default="surefoot")
     parser.set_defaults(run=_run)

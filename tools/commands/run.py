@@ -17,10 +17,10 @@ its last one and stands: on a terminal the run goes on and waits for `surefoot c
 right, forward, stop) from another one; with --plain, or without a terminal, that ends the run.
 
 With the simulated clock time waits for every process: the run may be slower than real time, and
-`surefoot restart NAME` goes on where the process stood (a restarted fsm stands the robot and waits for a
-direction). With --set run.clock=monotonic it keeps real time; a machine that cannot solve the MPC fast
-enough says so and runs its light profile, and estimator, wbc and fsm are restarted only while the robot is
-damped.
+`surefoot restart NAME` goes on exactly where the process stood. With --set run.clock=monotonic it keeps real
+time; a machine that cannot solve the MPC fast enough says so and runs its light profile. A process that is
+restarted is relieved by another that is ready: estimator, wbc and fsm while the robot rests, the others at any
+time.
 
 --reload, with the simulated clock, watches the project's source files: a change restarts just the processes that
 import the changed file, once it compiles; one that fails with the new source waits for the next change.

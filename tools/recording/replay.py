@@ -174,7 +174,7 @@ class _Player:
     def finish(self) -> None:
         """Nothing more is played: what is still missing?"""
         for boot, begins in self._begins.items():
-            last = max((step.t for step in self.track.steps if step.boot == boot), default=0.0)
+            last = max((step.t for step in self.track.steps), default=0.0)
             for key, first in begins.items():
                 if not self._result.left_out[self.track.process]:
                     self._result.comparison.finish(key, boot, first, round(last * 1e9))
@@ -190,10 +190,10 @@ class _Player:
             if key in self._kind.inputs:
                 self._inbox.deliver(key, decode(message_type(key), payload))
         self._inbox.clear_new()
-        self._outbox = Outbox(self._kind.outputs, self._send, checkpoint.boot)
+        self._outbox = Outbox(self._kind.outputs, self._send, checkpoint.writes_boot)
         counts = dict(zip(checkpoint.outputs, checkpoint.next_seq.tolist(), strict=True))
         self._outbox.continue_from(counts)
-        self._begins.setdefault(checkpoint.boot, counts)
+        self._begins.setdefault(checkpoint.writes_boot, counts)
         return component
 
     def _find(self, at: MessageId) -> Message | None:

@@ -53,9 +53,10 @@ def test_a_checkpoint_holds_the_state_the_latest_inputs_and_the_next_numbers():
     journal = Journal("fsm", ("operator/command",), boot=3)
     journal.note_step(0.5, [[command(0)]])
     latest = {"operator/command": command(0), "trajopt/plan": None}
-    journal.note_checkpoint(0.5, b"state", latest, {"fsm/event": 4}, active=True)
+    journal.note_checkpoint(0.5, b"state", latest, {"fsm/event": 4}, 2, active=True)
     checkpoint = decode(Checkpoint, journal.take().records[-1][3])
     assert (checkpoint.step, checkpoint.boot, checkpoint.active, checkpoint.fresh) == (1, 3, True, False)
+    assert checkpoint.writes_boot == 2
     assert checkpoint.state.tobytes() == b"state"
     assert checkpoint.latest_payloads() == {"operator/command": encode(command(0))}
     assert (checkpoint.outputs, checkpoint.next_seq.tolist()) == (("fsm/event",), [4])
@@ -66,7 +67,7 @@ def test_states_are_noted_at_full_seconds_by_every_process():
     noted = []
     for t in np.arange(0.0, 3.0, 0.03):
         if journal.checkpoint_is_due(t):
-            journal.note_checkpoint(t, b"", {}, {}, active=True)
+            journal.note_checkpoint(t, b"", {}, {}, 0, active=True)
             noted.append(round(float(t), 2))
     assert noted == [0.0, 1.02, 2.01]
 
