@@ -6,6 +6,7 @@ import time
 from math import inf
 
 from surefoot.bus.codec import check, decode, encode
+from surefoot.bus.errors import BusError
 from surefoot.bus.message import Message
 from surefoot.bus.recording.journal import LOG, Journal
 from surefoot.bus.session import Session
@@ -19,6 +20,7 @@ from surefoot.components.topic_buffer import TopicBuffers
 
 _INPUT_TIMEOUT_S = 10.0
 _LEAVE_S = 0.1
+_ASKED = 3
 
 
 class Stepper:
@@ -215,8 +217,17 @@ class Stepper:
         return payload is not None
 
     def _kept(self, key: str) -> list[bytes]:
-        """The last messages of a topic, from who keeps them."""
-        return self._session.ask(f"{clock.KEPT}/{key}")
+        """The last messages of a topic that has had some, from who keeps them.
+
+        Raises:
+            BusError: nobody answers: to go on without what its predecessor had read would be another run.
+        """
+        for _ in range(_ASKED):
+            if kept := self._session.ask(f"{clock.KEPT}/{key}", _INPUT_TIMEOUT_S):
+                return kept
+        raise BusError(
+            f"{key} has had messages, and io, which keeps them, has not told them when asked {_ASKED} times"
+        )
 
     def _send(self, key: str, message: Message) -> None:
         self._outgoing.append((key, check(message)))

@@ -1,8 +1,10 @@
 """A process that takes the place of another: with simulated time, and on the monotonic clock."""
 
 import numpy as np
+import pytest
 
 from surefoot.bus.codec import decode, encode
+from surefoot.bus.errors import BusError
 from surefoot.bus.messages import FsmEvent, OperatorCommand, StateEstimate
 from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components import clock_messages as clock
@@ -17,7 +19,7 @@ from surefoot.config.deployment import Deployment, Run
 class Session:
     """In place of the bus: nobody keeps anything."""
 
-    def ask(self, key):
+    def ask(self, key, timeout_s):
         return []
 
     def put(self, key, payload, lossless=True):
@@ -39,6 +41,11 @@ def test_a_process_that_has_not_begun_has_nothing_to_hand_over():
     second.resume(clock.Resume({}, first.snapshot()), {})
     second.step(0.002)
     assert second.health.life.name == "ACTIVATING"
+
+
+def test_without_what_its_predecessor_had_read_it_does_not_go_on():
+    with pytest.raises(BusError, match="fsm/reference has had messages, and io"):
+        process().resume(clock.Resume({"fsm/reference": 7}, b""), {"fsm/reference": 8})
 
 
 def test_a_memory_of_other_code_is_not_taken_over_and_that_is_told():
