@@ -1,7 +1,8 @@
 """The Zenoh session of one process: the only module that imports zenoh.
 
 The process of `io` is the hub, a router on a Unix socket in a folder that only its user may enter; every
-other process is its client. Multicast and gossip are off: nothing leaves the machine.
+other process is its client. Multicast and gossip are off: nothing leaves the machine, unless the deployment's
+`network` section has the hub listen to other machines too.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ from pathlib import Path
 
 import zenoh
 
+from surefoot.bus.endpoints import client_side, hub_side
 from surefoot.bus.errors import BusError
+from surefoot.config.network import Network
 
 _CONNECT_MS = 30_000
 _TX = {
@@ -35,26 +38,48 @@ def socket_path(namespace: str) -> Path:
 
 
 class Session:
-    """Publishes and subscribes bytes under a namespace."""
+    """Publishes and subscribes bytes under a namespace.
 
-    def __init__(self, namespace: str, hub: bool = False, connect_ms: int = _CONNECT_MS):
+    Attributes:
+        namespace: prefix of every key on the wire.
+        where: the endpoint of the hub, for people.
+    """
+
+    def __init__(
+        self,
+        namespace: str,
+        hub: bool = False,
+        connect_ms: int = _CONNECT_MS,
+        network: Network | None = None,
+    ):
         """Open the hub, or connect to it.
 
+        Args:
+            namespace: prefix of every key on the wire.
+            hub: open it.
+            connect_ms: how long to try to connect [ms].
+            network: of the deployment; None is one machine, closed to others.
+
         Raises:
-            BusError: no hub answers, or another hub already runs under this namespace.
+            BusError: no hub answers, another hub already runs under this namespace, or this machine's keys
+                cannot be used.
+            ConfigError: the deployment has no way from this machine to the hub.
         """
-        self._prefix = namespace
+        network = network or Network()
+        self.namespace = self._prefix = namespace
         path = socket_path(namespace)
-        endpoint = f"unixsock-stream/{path}"
+        local = f"unixsock-stream/{path}"
         if hub:
+            self.where, side = str(path), hub_side(network, namespace, local)
             _make_room(path, namespace)
+        elif network.at_hub:
+            self.where, side = str(path), {"connect": {"endpoints": [local]}}
+        else:
+            self.where, side = network.hub_endpoint, client_side(network)
         try:
-            self._session = zenoh.open(zenoh.Config.from_json5(json.dumps(_config(endpoint, hub, connect_ms))))
+            self._session = zenoh.open(zenoh.Config.from_json5(json.dumps(_config(side, hub, connect_ms))))
         except zenoh.ZError as error:
-            what = "cannot listen on" if hub else "nothing answers on"
-            raise BusError(
-                f"{what} {path}: is `surefoot run` running with namespace {namespace!r}? ({error})"
-            ) from None
+            raise BusError(_no_session(self.where, namespace, network, hub, str(error))) from None
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._kept: list[object] = []
 
@@ -172,17 +197,35 @@ def _make_room(path: Path, namespace: str) -> None:
     _owner_file(path).write_text(str(os.getpid()))
 
 
-def _config(endpoint: str, hub: bool, connect_ms: int) -> dict:
+def _no_session(where: str, namespace: str, network: Network, hub: bool, error: str) -> str:
+    """Why a session could not be opened, in words."""
+    if hub:
+        also = f" or {network.listen}: is the port taken, the address this machine's?" if network.listen else ""
+        return f"cannot listen on {where}{also} ({error})"
+    if network.at_hub:
+        return f"nothing answers on {where}: is `surefoot run` running with namespace {namespace!r}? ({error})"
+    return (
+        f"nothing answers on {where}: is `surefoot run` running there, does its firewall pass the port, and are "
+        "the identities of both machines of one `surefoot keys init`? A refused certificate looks the same. "
+        f"({error})"
+    )
+
+
+def _config(side: dict, hub: bool, connect_ms: int) -> dict:
+    """Zenoh's configuration for one side of the bus."""
+    link: dict = {"tx": _TX}
+    if "tls" in side:
+        link["tls"] = side["tls"]
     config: dict = {
         "mode": "router" if hub else "client",
         "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
-        "transport": {"shared_memory": {"enabled": False}, "link": {"tx": _TX}},
+        "transport": {"shared_memory": {"enabled": False}, "link": link},
     }
-    if hub:
-        config["listen"] = {"endpoints": [endpoint]}
-    else:
-        config["connect"] = {
-            "endpoints": [endpoint],
+    for section in ("listen", "connect", "access_control"):
+        if section in side:
+            config[section] = dict(side[section])
+    if not hub:
+        config["connect"] |= {
             "timeout_ms": connect_ms,
             "exit_on_failure": True,
             "retry": {"period_init_ms": 50, "period_max_ms": 200, "period_increase_factor": 1},

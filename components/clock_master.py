@@ -42,7 +42,7 @@ class ClockMaster:
 
     def __init__(self, deployment: Deployment, boot: int = 0, parent: int = 0):
         self._end = ProcessEnd(parent)
-        self.session = Session(deployment.run.namespace, hub=True)
+        self.session = Session(deployment.run.namespace, hub=True, network=deployment.network)
         self._desk = OperatorDesk(self.session)
         serve_deployment(self.session, deployment)
         table = processes(deployment.mpc.profile)
@@ -61,6 +61,7 @@ class ClockMaster:
     def run(self) -> int:
         """Until told to stop or the parent is gone; returns the exit code."""
         self._stepper.connect()
+        self._stepper.look = self.look
         for key, kept in self._kept.items():
             self.session.serve(f"{clock.KEPT}/{key}", partial(list, kept))
         gc.collect()
@@ -126,11 +127,12 @@ class RemoteExecutor:
         self._pending: tuple[int, dict[str, int]] | None = None
         self._resume = clock.Resume({}, b"")
         self._new_there = False
+        self._answered_ns = -1
         self._done: queue.SimpleQueue[tuple[clock.Done, dict[str, int]]] = queue.SimpleQueue()
         self._ready = Event()
         self._lock = Lock()
         master.session.subscribe(f"{clock.DONE}/{name}", lambda key, payload: self._on_done(payload))
-        master.session.subscribe(f"{clock.HELLO}/{name}", lambda key, payload: self._on_hello())
+        master.session.subscribe(f"{clock.HELLO}/{name}", lambda key, payload: self._on_hello(payload))
 
     def wait_ready(self) -> None:
         """Until the process has said hello."""
@@ -170,13 +172,16 @@ class RemoteExecutor:
 
     def _on_done(self, payload: bytes) -> None:
         """Kept at once: who comes up now asks for what has been sent already and is not visible yet."""
-        done = clock.unpack_done(payload)
+        done, pending = clock.unpack_done(payload), self._pending
+        if pending is None or done.t_ns != pending[0] or done.t_ns == self._answered_ns:
+            return  # said again, because a release was sent again
+        self._answered_ns = done.t_ns
         self._done.put((done, self._master.keep(done.sent)))
 
-    def _on_hello(self) -> None:
-        """The process is up, or up again: what it has not answered is asked once more."""
+    def _on_hello(self, payload: bytes) -> None:
+        """The process is up, or up again, or has heard nothing for a while: what it owes is asked once more."""
         with self._lock:
-            self._new_there = True
+            self._new_there |= payload == clock.NEW
             if self._pending is not None:
                 self._send(*self._pending)
         self._ready.set()

@@ -9,14 +9,14 @@ from typing import Any
 import msgpack
 import numpy as np
 
-RELEASE, DONE, HELLO = "clock/release", "clock/done", "clock/hello"
-"""Key prefixes; the process's name follows. HELLO: the process is ready, or ready again after a restart."""
+from surefoot.bus.service_keys import DONE as DONE
+from surefoot.bus.service_keys import HELLO as HELLO
+from surefoot.bus.service_keys import KEPT as KEPT
+from surefoot.bus.service_keys import RELEASE as RELEASE
+from surefoot.bus.service_keys import REQUEST as REQUEST
 
-KEPT = "kept"
-"""Key prefix; a topic's key follows. The process of io answers with the last messages of that topic."""
-
-REQUEST = "operator/request"
-"""Key on which people's commands reach the process of io, which dates and numbers them."""
+NEW, STILL_THERE = b"", b"still there"
+"""What a HELLO says: a process without memory of this run, or one that waits for a release."""
 
 STOP_NS = -1
 """Release time that means: end."""

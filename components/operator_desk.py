@@ -19,8 +19,9 @@ _NAME = "operator"
 class OperatorDesk:
     """Turns requests into messages on `operator/command`."""
 
-    def __init__(self, session: Session):
-        self._session = session
+    def __init__(self, session: Session, lossless: bool = True):
+        """`lossless`: wait for a reader that is late; in real time io waits for nobody."""
+        self._session, self._lossless = session, lossless
         self._requests: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self._kept: deque[bytes] = deque(maxlen=KEPT)
         self._sent = 0
@@ -36,7 +37,7 @@ class OperatorDesk:
             command = self._requests.get().decode(errors="replace")
             payload = encode(OperatorCommand(t=t, seq=self._sent, valid=True, command=command))
             self._kept.append(payload)
-            self._session.put(_TOPIC, payload)
+            self._session.put(_TOPIC, payload, self._lossless)
             self._journal.note_message(t, _TOPIC, self._sent, payload)
             self._sent += 1
             count += 1

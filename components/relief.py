@@ -12,12 +12,13 @@ from dataclasses import astuple, dataclass
 import msgpack
 
 from surefoot.bus.errors import BusError
+from surefoot.bus.service_keys import RELIEF_ANSWER as _ANSWER
+from surefoot.bus.service_keys import RELIEF_ASK as _ASK
 from surefoot.bus.session import Session
 
 SHOW, GIVE = b"show", b"give"
 """What a successor asks: where the process stands, or its place."""
 
-_ASK, _ANSWER = "relief/ask", "relief/answer"  # key prefixes; the process's name follows
 _PATIENCE_S = 5.0
 
 

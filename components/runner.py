@@ -15,6 +15,7 @@ from surefoot.components.operator_desk import OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
 from surefoot.components.relief import GIVE, SHOW, Relief
+from surefoot.components.run_clock import AnotherRun, run_clock, serve_time
 from surefoot.components.scheduler import NS
 from surefoot.components.stepper import Stepper
 from surefoot.config.deployment import Deployment
@@ -22,6 +23,7 @@ from surefoot.config.deployment import Deployment
 _LOOK_S = 0.2
 _LET_GO_S = 1.0  # shorter than the supervisor's patience
 _LEAVE_S = 0.1
+_GREET_S = 1.0  # without a release
 
 
 class Runner:
@@ -43,10 +45,11 @@ class Runner:
         self._deployment, self._name = deployment, name
         self._process = processes(deployment.mpc.profile)[name]
         self._monotonic = deployment.run.clock == "monotonic"
-        self._session = Session(deployment.run.namespace, hub=self.hub)
+        self._session = Session(deployment.run.namespace, hub=self.hub, network=deployment.network)
         component = component_class(name)(deployment)
         self._stepper = Stepper(component, self._session, self._process, boot, simulated=not self._monotonic)
         self._relief, self._relieves, self._relieved = Relief(self._session, name), relieves, False
+        self._clock = run_clock(self._session, deployment, lambda: self._end.due)
 
     def run(self) -> int:
         """Until the end; returns the exit code.
@@ -60,6 +63,7 @@ class Runner:
         gc.freeze()
         self._stepper.connect()  # a process that is busy with itself would hold up the bus
         health.life = Life.IDLE
+        self._stepper.look = self._look
         try:
             if self._relieves:
                 self._take_over()
@@ -109,6 +113,15 @@ class Runner:
     def _goes_on(self) -> bool:
         return not (self._end.due or self._relieved)
 
+    def _look(self) -> None:
+        """Called while a message is awaited.
+
+        Raises:
+            SystemExit: there is no reason to wait on.
+        """
+        if self._end.due:
+            raise SystemExit(0)
+
     def _let_go(self) -> None:
         """Deactivate at the process's rate, for a second at the most."""
         period = 1.0 / (nominal_hz(self._process) or 1.0 / _LOOK_S)
@@ -129,28 +142,33 @@ class Runner:
         releases: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         stepper, name = self._stepper, self._name
         self._session.subscribe(f"{clock.RELEASE}/{name}", lambda key, payload: releases.put(payload))
-        self._session.put(f"{clock.HELLO}/{name}", b"")
-        last_ns = None
+        self._session.put(f"{clock.HELLO}/{name}", clock.NEW)
+        last_ns, answer, greeted = None, b"", time.monotonic()
         while not self._end.due:
             stepper.tell((last_ns or 0) / NS)
             try:
                 t_ns, visible, resume = clock.unpack_release(releases.get(timeout=_LOOK_S))
             except queue.Empty:
-                if last_ns is None:
-                    # The hub may have come up after the first greeting.
-                    self._session.put(f"{clock.HELLO}/{name}", b"")
+                # The hub may have come up after the first greeting; later a release or its answer may be lost.
+                if last_ns is None or time.monotonic() - greeted > _GREET_S:
+                    self._session.put(f"{clock.HELLO}/{name}", clock.NEW if last_ns is None else clock.STILL_THERE)
+                    greeted = time.monotonic()
                 continue
+            greeted = time.monotonic()
             if t_ns == clock.STOP_NS:
                 return
-            if t_ns == last_ns:
-                continue
-            if last_ns is None:
-                stepper.resume(resume or clock.Resume({}, b""), visible)
-            last_ns = t_ns
-            stepper.read_visible(visible)
-            stepper.step(t_ns / NS)
-            done = clock.Done(t_ns, stepper.publish(), stepper.snapshot())
-            self._session.put(f"{clock.DONE}/{name}", clock.pack_done(done))
+            if last_ns is not None and t_ns < last_ns:
+                raise AnotherRun(
+                    f"time went back from {last_ns / NS} s to {t_ns / NS} s: io belongs to another run"
+                )
+            if t_ns != last_ns:
+                if last_ns is None:
+                    stepper.resume(resume or clock.Resume({}, b""), visible)
+                last_ns = t_ns
+                stepper.read_visible(visible)
+                stepper.step(t_ns / NS)
+                answer = clock.pack_done(clock.Done(t_ns, stepper.publish(), stepper.snapshot()))
+            self._session.put(f"{clock.DONE}/{name}", answer)
 
     def _follow_timer(self) -> None:
         """Absolute deadlines on the monotonic clock; after an overrun the missed ones are skipped and counted."""
@@ -193,7 +211,7 @@ class Runner:
         self._answer_successor()
 
     def _live_t(self) -> float:
-        return time.monotonic() - self._deployment.run.epoch_s
+        return self._clock()
 
 
 class HubRunner(Runner):
@@ -203,7 +221,8 @@ class HubRunner(Runner):
 
     def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0):
         super().__init__(deployment, name, boot, parent)
-        self._desk = OperatorDesk(self._session)
+        self._desk = OperatorDesk(self._session, lossless=False)
+        serve_time(self._session, deployment)
         serve_deployment(self._session, deployment)
 
     def _let_go(self) -> None:

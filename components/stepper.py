@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from math import inf
 
 from surefoot.bus.codec import check, decode, encode
-from surefoot.bus.errors import BusError
 from surefoot.bus.message import Message
 from surefoot.bus.recording.journal import LOG, Journal
 from surefoot.bus.session import Session
@@ -20,7 +20,7 @@ from surefoot.components.topic_buffer import TopicBuffers
 
 _INPUT_TIMEOUT_S = 10.0
 _LEAVE_S = 0.1
-_ASKED = 3
+_ASK_AGAIN_S = 0.3
 
 
 class Stepper:
@@ -32,6 +32,7 @@ class Stepper:
         outbox: numbers its messages.
         journal: what it reads and publishes, for a recorder.
         health: what is told of it.
+        look: called while it waits for a message; raises when there is no reason to wait on.
     """
 
     def __init__(
@@ -52,6 +53,7 @@ class Stepper:
         self.outbox = Outbox(component.outputs, self._send, boot)
         self.journal = Journal(component.name, component.inputs, boot)
         self.health = Health(component, session, self.buffers, process, self.journal, boot)
+        self.look: Callable[[], None] = lambda: None
         self._session = session
         self._inbox = Inbox(component.inputs)
         self._outgoing: list[tuple[str, Message]] = []
@@ -69,7 +71,7 @@ class Stepper:
 
     def resume(self, resume: clock.Resume, visible: dict[str, int]) -> None:
         """Take the place of a process that is gone, where its last finished step left it."""
-        kept = {key: self._kept(key) for key in self.component.inputs if visible.get(key)}
+        kept = {key: self._await_kept(key) for key in self.component.inputs if visible.get(key)}
         self.buffers.resume(resume.had, visible, kept, self._inbox)
         self.outbox.continue_from(visible)
         if resume.snapshot:
@@ -216,18 +218,21 @@ class Stepper:
             self._session.put(f"{LOG}/{self.component.name}", payload, lossless=False)
         return payload is not None
 
-    def _kept(self, key: str) -> list[bytes]:
-        """The last messages of a topic that has had some, from who keeps them.
-
-        Raises:
-            BusError: nobody answers: to go on without what its predecessor had read would be another run.
-        """
-        for _ in range(_ASKED):
-            if kept := self._session.ask(f"{clock.KEPT}/{key}", _INPUT_TIMEOUT_S):
-                return kept
-        raise BusError(
-            f"{key} has had messages, and io, which keeps them, has not told them when asked {_ASKED} times"
+    def _kept(self, key: str) -> list[bytes] | None:
+        """The last messages of a topic, from who keeps them; None when nobody answers."""
+        kept = self._session.ask(f"{clock.KEPT}/{key}") or None
+        self.health.lost = (
+            "" if kept else f"{key}: a message is missing, and io does not answer: is the link down?"
         )
+        self.tell(self.health.t)
+        self.look()
+        return kept
+
+    def _await_kept(self, key: str) -> list[bytes]:
+        """The same; waits until there is an answer."""
+        while (kept := self._kept(key)) is None:
+            time.sleep(_ASK_AGAIN_S)
+        return kept
 
     def _send(self, key: str, message: Message) -> None:
         self._outgoing.append((key, check(message)))

@@ -21,6 +21,10 @@ _ON_ITS_WAY_S = 0.3
 _MISFITS = 8  # so many messages out of sequence in a row are a new sequence
 
 
+Ask = Callable[[str], list[bytes] | None]
+"""The last messages of a topic, from who keeps them; None when nobody can be asked now."""
+
+
 def _nobody(key: str) -> list[bytes]:
     """Nobody keeps any message of a topic."""
     return []
@@ -152,13 +156,11 @@ class TopicBuffers:
             self._take(key, topic, seen, inbox)
         inbox.clear_new()
 
-    def deliver_visible(
-        self, visible: dict[str, int], inbox: Inbox, timeout_s: float, ask: Callable[[str], list[bytes]] = _nobody
-    ) -> str:
+    def deliver_visible(self, visible: dict[str, int], inbox: Inbox, timeout_s: float, ask: Ask = _nobody) -> str:
         """Hand over exactly the messages with sequence numbers below the counts in `visible`.
 
-        Waits for those that are still on their way, and asks for one that was sent before its reader was there;
-        one that does not come is skipped.
+        Waits for those that are still on their way, and asks for one that was sent before its reader was there,
+        or while a link was down; one that nobody has kept is skipped.
 
         Returns:
             What did not come in time, in words; empty when all is there.
@@ -173,7 +175,10 @@ class TopicBuffers:
             while topic.next < wanted:
                 missing = topic.next
                 if not self._wait(topic, _ON_ITS_WAY_S):
-                    self._place(key, topic, ask(key), topic.next)
+                    kept = ask(key)
+                    if kept is None:
+                        continue  # nothing is lost yet
+                    self._place(key, topic, kept, topic.next)
                     self._take(key, topic, wanted, inbox)
                 if topic.next == missing and not self._wait(topic, timeout_s):
                     lost = f"{key}: message {topic.next} of {wanted} did not arrive in {timeout_s:g} s"

@@ -14,6 +14,7 @@ from surefoot.config.estimator import Estimator
 from surefoot.config.fsm import Fsm
 from surefoot.config.hw import Hw
 from surefoot.config.mpc import Mpc
+from surefoot.config.network import Network
 from surefoot.config.ocp import Ocp
 from surefoot.config.robot import GRAVITY, Robot, load_robot
 from surefoot.config.terrain import Terrain
@@ -46,6 +47,7 @@ class Deployment:
 
     robot: str = "aliengo"
     run: Run = field(default_factory=Run)
+    network: Network = field(default_factory=Network)
     hw: Hw = field(default_factory=Hw)
     terrain: Terrain = field(default_factory=Terrain)
     estimator: Estimator = field(default_factory=Estimator)

@@ -57,6 +57,8 @@ def live_run(
         raise CallError(
             "--reload needs run.clock = 'simulated': in real time nothing waits for a process that is restarted"
         )
+    if record is not None and not deployment.network.at_hub:
+        raise CallError(f"--record is for {deployment.network.hub}, the machine of io: all journals meet there")
     note = ""
     if _profile_is_open(deployment, overrides):
         console.print("measuring how long a solve of the MPC takes here")
@@ -71,7 +73,8 @@ def live_run(
     if note:
         supervisor.note(note)
     interactive = console.is_terminal and not plain
-    title = f"Surefoot, {config.name}, {deployment.run.clock} clock, mpc {deployment.mpc.profile}"
+    where = f" on {deployment.network.here}" if len(deployment.network.hosts) > 1 else ""
+    title = f"Surefoot, {config.name}{where}, {deployment.run.clock} clock, mpc {deployment.mpc.profile}"
     state = Verdict()
 
     def until(picture: Picture) -> str:
@@ -105,7 +108,9 @@ def live_run(
 
 
 def _profile_is_open(deployment: Deployment, overrides: list[str]) -> bool:
-    """Only a run in real time must fit the machine, and only if nobody has said which profile it is to be."""
+    """In real time a solve must fit the MPC's machine, if nobody has said which profile it is to be."""
+    if "mpc" not in deployment.network.components_here:
+        return False
     said = any(override.startswith("mpc.profile=") for override in overrides)
     return deployment.run.clock == "monotonic" and deployment.mpc.profile == "paper" and not said
 

@@ -26,9 +26,14 @@ _RECENT_S = 10.0
 
 @dataclass
 class Watched:
-    """One process of the run."""
+    """One process of the run.
+
+    Attributes:
+        host: the machine that runs it; "" this one.
+    """
 
     name: str
+    host: str = ""
     popen: subprocess.Popen | None = None
     restarts: int = 0
     crashes: int = 0

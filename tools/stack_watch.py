@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Callable
 from typing import Any
 
 from rich.console import Console, RenderableType
 from rich.live import Live
 
 from surefoot.bus.errors import BusError
-from surefoot.bus.session import Session, refuse_second_hub, socket_path
+from surefoot.bus.session import Session
 from surefoot.bus.topics import TOPICS
 from surefoot.config.deployment import Deployment, load_deployment
 from surefoot.config.typed_toml import ConfigError
@@ -20,7 +21,6 @@ from surefoot.tools.picture import Picture, SupportMargin, Watched
 from surefoot.tools.status_screen import screen
 from surefoot.tools.supervisor_messages import NOTICE, Notice, unpack_notice
 
-_CONNECT_MS = 2000
 _LISTEN_S = 1.5  # three statuses of every process
 _DRAW_S = 0.25
 _GONE_S = 1.5  # after so long without a word the hub is looked for
@@ -35,14 +35,15 @@ class StackWatch:
         ended: why the stack is no longer there; empty while it is.
     """
 
-    def __init__(self, namespace: str):
-        """Connect and begin to listen.
+    def __init__(self, connect: Callable[[], Session]):
+        """Begin to listen on the bus that `connect` opens.
 
         Raises:
-            BusError: no stack runs under that namespace.
+            BusError: no stack runs there.
         """
-        self.namespace, self.picture, self.ended = namespace, Picture(), ""
-        self._session = Session(namespace, connect_ms=_CONNECT_MS)
+        self._connect, self._session = connect, connect()
+        self.where, self.namespace = self._session.where, self._session.namespace
+        self.picture, self.ended = Picture(), ""
         self._observer = Observer(self._session, self.picture)
         self._notice: Notice | None = None
         self._deployment: Deployment | None = None
@@ -59,7 +60,7 @@ class StackWatch:
             if first:
                 self._load(self._notice)
         heard = max(self._begun, *(watched.heard for watched in self.picture.processes.values()))
-        if time.monotonic() - heard > _GONE_S and not _served(self.namespace):
+        if time.monotonic() - heard > _GONE_S and not _served(self._connect):
             self.ended = self.picture.ending or "io has ended and said no reason"
 
     def listen(self, seconds: float) -> None:
@@ -121,33 +122,33 @@ class StackWatch:
         self._observer.margin = SupportMargin(self._deployment.load_robot())
 
 
-def show_once(namespace: str, wait: bool, as_json: bool, console: Console) -> int:
+def show_once(connect: Callable[[], Session], wait: bool, as_json: bool, console: Console) -> int:
     """Print the status; 0 all is well, 1 something is not.
 
     Raises:
-        BusError: no stack runs under that namespace, and none is waited for.
+        BusError: no stack runs there, and none is waited for.
     """
-    watch = _visit(namespace, wait, console)
+    watch = _visit(connect, wait, console)
     watch.listen(_LISTEN_S)
     watch.close()
     if as_json:
         print(json.dumps(watch.table(), indent=2))
     else:
-        console.print(f"connected to {socket_path(namespace)}", watch.drawn(), sep="\n")
+        console.print(f"connected to {watch.where}", watch.drawn(), sep="\n")
     return 0 if watch.healthy else 1
 
 
-def show_live(namespace: str, wait: bool, console: Console) -> int:
+def show_live(connect: Callable[[], Session], wait: bool, console: Console) -> int:
     """Keep the status on the screen until Ctrl-C or the stack's end; with `wait` beyond that.
 
     Returns:
         0 all was well in the end, 1 something was not, or the stack has ended.
 
     Raises:
-        BusError: no stack runs under that namespace, and none is waited for.
+        BusError: no stack runs there, and none is waited for.
     """
     while True:
-        watch = _visit(namespace, wait, console)
+        watch = _visit(connect, wait, console)
         try:
             with Live(console=console, screen=True, auto_refresh=False) as live:
                 while not watch.ended:
@@ -162,28 +163,28 @@ def show_live(namespace: str, wait: bool, console: Console) -> int:
             return 1
 
 
-def _visit(namespace: str, wait: bool, console: Console) -> StackWatch:
+def _visit(connect: Callable[[], Session], wait: bool, console: Console) -> StackWatch:
     """Connect, at once or as soon as there is something to connect to."""
-    if wait and not _served(namespace):
-        console.print(f"no stack runs with namespace {namespace!r}; waiting for one, Ctrl-C ends that")
+    said = False
     while True:
         try:
-            if wait and not _served(namespace):
-                raise BusError
-            return StackWatch(namespace)
-        except BusError:
+            return StackWatch(connect)
+        except BusError as error:
             if not wait:
                 raise
+            if not said:
+                console.print(f"{error}; waiting for a stack, Ctrl-C ends that")
+                said = True
         time.sleep(_RETRY_S)
 
 
-def _served(namespace: str) -> bool:
+def _served(connect: Callable[[], Session]) -> bool:
     """Whether a hub listens."""
     try:
-        refuse_second_hub(namespace)
+        connect().close()
     except BusError:
-        return True
-    return False
+        return False
+    return True
 
 
 def _row(watched: Watched, trouble: str) -> dict[str, Any]:

@@ -108,6 +108,7 @@ def process_table(picture: Picture) -> Table:
     for name, watched in picture.processes.items():
         status = watched.status
         boot = str(max(watched.restarts, status.boot if status is not None else 0))
+        name = f"{name}, {watched.host}" if watched.host else name
         if status is None or watched.out:
             state = "out" if watched.out else "lent" if watched.lent_to else "absent"
             table.add_row(name, Text(state, style="yellow"), *[""] * 7, boot)

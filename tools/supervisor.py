@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from surefoot.bus.endpoints import check_keys
 from surefoot.bus.errors import BusError
 from surefoot.bus.session import Session, refuse_second_hub
 from surefoot.bus.topics import PROCESSES
@@ -67,6 +68,8 @@ class Supervisor:
     In simulation a process that ends by itself is started again, and simulated time waits for it. On the
     monotonic clock the run ends: the gate in io damps the robot as soon as commands are missing.
 
+    It starts what `network.hosts` gives this machine; the rest it only hears. The machine of io begins the run.
+
     Attributes:
         picture: what has been heard, updated while `run` goes on.
     """
@@ -97,6 +100,10 @@ class Supervisor:
         self._record = record
         self._recorder: RecorderProcess | None = None
         self.picture = Picture(simulated=self._simulated)
+        self._network = deployment.network
+        for name in PROCESSES:
+            if name not in self._network.components_here:
+                self.picture.processes[name].host = self._network.host_of(name)
         self._session: Session | None = None
         self._observer: Observer | None = None
         self._guardian: Guardian | None = None
@@ -112,21 +119,26 @@ class Supervisor:
         Whatever happens, no process is left behind.
 
         Raises:
-            BusError: io did not come up, or another run has this namespace.
+            BusError: io did not come up or cannot be reached, another run has this namespace, or this machine's
+                keys cannot be used.
         """
-        refuse_second_hub(self._deployment.run.namespace)
+        at_hub = self._network.at_hub
+        check_keys(self._network)
+        if at_hub:
+            refuse_second_hub(self._deployment.run.namespace)
         self._log_dir.mkdir(parents=True, exist_ok=True)
         try:
             self._guardian = Guardian(self._log_of("supervisor"))
-            self._start("io")
+            if at_hub:
+                self._start("io")
             self._session = self._connect()
             self._listen(self._session)
             self._await_io(each)
             self._start_recorder(each)
-            first = self._deployment.run.command
+            first = self._deployment.run.command if at_hub else ""
             if self._simulated:
                 self._command(first)
-            for name in PROCESSES:
+            for name in self._network.components_here:
                 if name != "io":
                     self._start(name)
             while True:
@@ -200,6 +212,8 @@ class Supervisor:
 
     def _refusal(self, name: str) -> str:
         """Why a process cannot be replaced now, to follow its name; empty if it can."""
+        if host := self.picture.processes[name].host:
+            return f": it is for the supervisor of {host}"
         if name == "io":
             return ": it holds the robot and the bus; stop the run instead"
         if lent_to := self.picture.processes[name].lent_to:
@@ -339,6 +353,8 @@ class Supervisor:
             if code is None:
                 continue
             what = self._obituary(watched.name, code)
+            if code == 0 and self._simulated and not self._network.at_hub:
+                return f"the run on {self._network.hub} has ended"  # its clock has told the processes to end
             if self._sources is not None and watched.name != "io" and code > 0:
                 # The same source would end in the same way.
                 watched.popen = None
@@ -393,10 +409,12 @@ class Supervisor:
 
     def _connect(self) -> Session:
         """The bus, as soon as io holds it."""
+        if not self._network.at_hub:
+            return Session(self._deployment.run.namespace, connect_ms=round(1e3 * _HUB_S), network=self._network)
         io, end = self.picture.processes["io"], time.monotonic() + _HUB_S
         while True:
             try:
-                return Session(self._deployment.run.namespace, connect_ms=1000)
+                return Session(self._deployment.run.namespace, connect_ms=1000, network=self._network)
             except BusError:
                 code = io.exit_code
                 if code is not None:

@@ -59,7 +59,7 @@ class BaseTarget:
 
     @property
     def lowered(self) -> bool:
-        """The base has been lowered as far as it goes: nothing is left but to damp."""
+        """The base has been lowered as far as it goes: nothing is left but to damp, until the target is reset."""
         settings = self._settings
         return self.held_s > settings.hold_s + settings.lower_m / settings.lower_speed
 
@@ -74,6 +74,8 @@ class BaseTarget:
             p_WB, R_WB: where the base is; held at the start, before there was any target.
             stance: (4,) feet on the ground.
         """
+        if self.lowered:
+            policy = None  # one that comes back now would make a robot that lies on the ground leap up
         if policy is not None:
             source = self._of_policy(t, policy)
             self.held_s = 0.0

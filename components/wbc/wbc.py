@@ -59,7 +59,8 @@ class Wbc(Component):
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         estimate, reference = inbox.fresh("state/estimate", t), inbox.latest("fsm/reference")
         lost = "state/estimate" if estimate is None else "fsm/reference" if reference is None else ""
-        if lost or not reference.valid or reference.mode != ControlMode.BALANCE:
+        balances = reference is not None and reference.valid and reference.mode == ControlMode.BALANCE
+        if not balances or (lost and not self._target.lowered):
             self._target.reset()
             self._observer.reset()
         if lost:
@@ -118,7 +119,7 @@ class Wbc(Component):
         stance = trusted | (orphaned & (t > reference.swing_t1) & estimate.contact)
         target = self._target.at(t, policy, estimate.p_WB, R, stance)
         if self._target.lowered:
-            return self._damp(t, "no policy came back: the base has been lowered")
+            return self._damp(t, "no policy came back: the base has been lowered; command sit, then stand")
         self._observe(t, reference)
         # A foot that has just left the ground may still carry in the policy: the wrench it was to give is
         # asked of the others, or the base would tip towards it until the next policy comes.

@@ -8,12 +8,14 @@ import pytest
 
 from surefoot.bus.codec import decode
 from surefoot.bus.errors import BusError
-from surefoot.bus.messages import JointCommand, ProcessStatus
+from surefoot.bus.messages import FsmEvent, JointCommand, ProcessStatus
+from surefoot.components import clock_messages as clock
 from surefoot.components import runner
 from surefoot.components.clock_messages import pack_snapshot
 from surefoot.components.component import Component
 from surefoot.components.memory import ForeignMemory, Memory
 from surefoot.components.relief import Place
+from surefoot.components.run_clock import AnotherRun
 from surefoot.components.wbc.wbc import Wbc
 from surefoot.config.deployment import Deployment, Run
 
@@ -105,9 +107,9 @@ def process(monkeypatch):
     monkeypatch.setattr(runner, "ProcessEnd", Told)
     monkeypatch.setattr("surefoot.components.health._PERIOD_S", 0.0)
 
-    def make(kind, relieves=False, **bus):
+    def make(kind, relieves=False, which="monotonic", **bus):
         monkeypatch.setattr(runner, "component_class", lambda name: kind)
-        made = runner.Runner(replace(Deployment(), run=Run(clock="monotonic")), kind.name, relieves=relieves)
+        made = runner.Runner(replace(Deployment(), run=Run(clock=which)), kind.name, relieves=relieves)
         vars(made._session).update(bus)
         return made
 
@@ -188,3 +190,73 @@ def test_a_successor_without_a_predecessor_gives_up(process, monkeypatch):
     with pytest.raises(BusError, match="fsm has not answered its successor"):
         fsm.run()
     assert fsm._stepper.component.ramped == 0
+
+
+class Counter(Component):
+    """Publishes the number of its steps."""
+
+    name = "fsm"
+    outputs = ("fsm/event",)
+
+    def __init__(self, deployment):
+        super().__init__(deployment)
+        self.steps = 0
+
+    memory = Memory("steps")
+
+    def step(self, t, inbox, outbox):
+        self.steps += 1
+        outbox.publish("fsm/event", FsmEvent(t=t, valid=True, reason=str(self.steps)))
+
+
+class Clock(Bus):
+    """In place of the bus and the master of simulated time: each greeting is answered by the next release."""
+
+    releases = ()
+
+    def subscribe(self, key, receive):
+        super().subscribe(key, receive)
+        if key == f"{clock.RELEASE}/fsm":
+            self.receive, self.left = receive, list(self.releases)
+
+    def put(self, key, payload, lossless=True):
+        super().put(key, payload, lossless)
+        if key == f"{clock.HELLO}/fsm" and self.left:
+            self.receive(f"{clock.RELEASE}/fsm", clock.pack_release(self.left.pop(0), {}))
+
+    def said(self, key):
+        return [payload for at, payload in self.sent if at == key]
+
+
+@pytest.fixture
+def follower(process, monkeypatch):
+    """Makes a runner of `Counter` that is released at the given times, one for each greeting."""
+    monkeypatch.setattr(runner, "Session", Clock)
+    monkeypatch.setattr(runner, "_LOOK_S", 0.01)
+    monkeypatch.setattr(runner, "_GREET_S", 0.0)
+    monkeypatch.setattr(Told, "looks", 10**6)
+
+    def make(*releases):
+        monkeypatch.setattr(Clock, "releases", releases)
+        return process(Counter, which="simulated")
+
+    return make
+
+
+def test_a_release_that_comes_again_is_answered_again_without_another_step(follower):
+    fsm = follower(4_000_000, 4_000_000, 8_000_000, 8_000_000, clock.STOP_NS)
+    assert fsm.run() == 0
+    bus = fsm._session
+    answers = [clock.unpack_done(payload) for payload in bus.said(f"{clock.DONE}/fsm")]
+    assert [answer.t_ns for answer in answers] == [4_000_000, 4_000_000, 8_000_000, 8_000_000]
+    assert answers[0] == answers[1] and answers[2] == answers[3]
+    assert fsm._stepper.component.steps == 2 and len(bus.said("fsm/event")) == 2
+    hellos = bus.said(f"{clock.HELLO}/fsm")
+    assert hellos[0] == clock.NEW and set(hellos[1:]) == {clock.STILL_THERE}
+
+
+def test_a_clock_that_goes_back_belongs_to_another_run(follower):
+    fsm = follower(4_000_000, 8_000_000, 0)
+    with pytest.raises(AnotherRun, match=r"from 0\.008 s to 0\.0 s"):
+        fsm.run()
+    assert not fsm._session.open

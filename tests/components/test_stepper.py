@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from surefoot.bus.codec import decode, encode
-from surefoot.bus.errors import BusError
 from surefoot.bus.messages import FsmEvent, OperatorCommand, StateEstimate
 from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components import clock_messages as clock
@@ -19,7 +18,7 @@ from surefoot.config.deployment import Deployment, Run
 class Session:
     """In place of the bus: nobody keeps anything."""
 
-    def ask(self, key, timeout_s):
+    def ask(self, key):
         return []
 
     def put(self, key, payload, lossless=True):
@@ -44,8 +43,17 @@ def test_a_process_that_has_not_begun_has_nothing_to_hand_over():
 
 
 def test_without_what_its_predecessor_had_read_it_does_not_go_on():
-    with pytest.raises(BusError, match="fsm/reference has had messages, and io"):
-        process().resume(clock.Resume({"fsm/reference": 7}, b""), {"fsm/reference": 8})
+    waiting, looks = process(), []
+
+    def look():
+        looks.append(waiting.health.lost)
+        if len(looks) == 2:
+            raise SystemExit(0)  # as when it is told to end
+
+    waiting.look = look
+    with pytest.raises(SystemExit):
+        waiting.resume(clock.Resume({"fsm/reference": 7}, b""), {"fsm/reference": 8})
+    assert looks[0] == looks[1] == "fsm/reference: a message is missing, and io does not answer: is the link down?"
 
 
 def test_a_memory_of_other_code_is_not_taken_over_and_that_is_told():

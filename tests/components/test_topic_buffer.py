@@ -46,6 +46,19 @@ def test_a_message_that_does_not_come_is_named_and_skipped():
     assert "message 1 of 3 did not arrive" in reader.lost
 
 
+def test_while_nobody_can_be_asked_nothing_is_skipped_and_what_was_kept_takes_its_place():
+    reader, kept = Reader(), [packed(seq) for seq in range(2, 100)]
+    answers = iter([None, None, kept])
+    reader.put(*(packed(seq) for seq in range(40)))
+    reader.read(40)
+    reader.put(packed(41), packed(43))
+    reader.inbox.clear_new()
+    lost = reader.buffers.deliver_visible({KEY: 43}, reader.inbox, 0.01, lambda key: next(answers))
+    assert [message.seq for message in reader.inbox.new(KEY)] == [40, 41, 42]
+    assert not lost and reader.buffers.bad == 0 and next(answers, "asked thrice") == "asked thrice"
+    assert reader.read(60)[0] == (43, 0) and len(reader.inbox.new(KEY)) == 17 and reader.buffers.bad == 0
+
+
 def test_a_second_publisher_is_told_and_dropped():
     reader = Reader()
     reader.put(packed(0), packed(0), packed(0, t=9.0), packed(10**6))

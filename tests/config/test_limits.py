@@ -191,6 +191,8 @@ def test_an_entry_out_of_range_is_named_by_its_place():
             build(Deployment, with_override({}, assignment))
 
 
+ALL = "['io','estimator','wbc','mpc','fsm','trajopt','elevation_map']"
+
 # Values that are possible alone, but not together.
 TOGETHER = {
     "estimator.contact_off_n=12": r"estimator: contact_off_n = 12\.0 is above contact_on_n = 10\.0",
@@ -246,6 +248,21 @@ TOGETHER = {
     "elevation_map.cell_m=0.06": r"^elevation_map: vfa\.edge_max_m = 0\.03: .* rises 0\.035 m .*cell_m = 0\.06",
     "elevation_map.cell_m=0.005 elevation_map.length_m=20": r"^elevation_map: .* 1280000 cells, at most 250000",
     "terrain.kind=slope terrain.slope.run_up_m=0.5": r"^terrain\.slope\.run_up_m = 0\.5: .* 0\.58 m",
+    'network.hosts={robot=["io"]}': r"^network: hosts: estimator, wbc, .* runs nowhere; name each",
+    'network.hosts.laptop=["mpc"]': r"hosts: io, estimator, wbc, .* runs nowhere",
+    f"network.hosts={{robot={ALL},laptop=['mpc']}}": r"^network: hosts\.robot: mpc runs twice",
+    f"network.hosts={{robot={ALL},laptop=['motor']}}": r"hosts\.laptop: no component 'motor'; there are io, est",
+    f"network.hosts={{operator={ALL}}}": r"hosts\.operator: io cannot run there",
+    f"network.hosts={{robot={ALL},laptop=[]}}": r"listen is empty: laptop cannot reach robot",
+    f"network.hosts={{robot={ALL},laptop=[]}} network.listen=tls/0.0.0.0:1": r"address is empty: .* laptop reach",
+    "network.host=laptop": r"^network: host = 'laptop': hosts has robot",
+    "network.listen=7448": r"listen = 7448: expected str",
+    "network.listen=tls/0.0.0.0": r"listen = 'tls/0\.0\.0\.0': such as \"tls/0\.0\.0\.0:7448\"",
+    "network.listen=tls/0.0.0.0:70000": r"listen = 'tls/0\.0\.0\.0:70000': such as",
+    "network.listen=udp/0.0.0.0:7448": r"listen = 'udp/0\.0\.0\.0:7448': such as",
+    "network.listen=tcp/127.0.0.1:7448": r"tcp lets everyone in; use tls and `surefoot keys init`, or insecure",
+    "network.insecure=true network.listen=tcp/0.0.0.0:7448": r"without keys only 127\.0\.0\.1 may listen; use tls",
+    "network.address=tls/10.0.0.1:7448": r"address = 'tls/10\.0\.0\.1:7448': a host name or an IP address",
     "robot=spot": r"^robot 'spot' is not described; known: aliengo",
 }
 
@@ -267,6 +284,9 @@ def test_values_that_do_not_go_together_are_named(assignments, said):
         "trajopt.intervals=40 trajopt.interval_s=0.1",
         "terrain.kind=planks terrain.planks.stiffness=60 terrain.planks.start_offset_m=0",
         "wbc.observer_force_share=0 wbc.observer_moment_max=0",
+        "network.insecure=true network.listen=tcp/127.0.0.1:7448",
+        "network.listen=tls/[::]:7448 network.address=fe80::1",
+        f"network.hosts={{robot={ALL},pc=[]}} network.listen=tls/0.0.0.0:1 network.address=a network.host=pc",
         "mpc.profile=light mpc.interval_s=0.02 mpc.intervals=50",
     ],
 )

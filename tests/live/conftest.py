@@ -19,6 +19,7 @@ from surefoot.bus.session import Session
 from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components import clock_messages as clock
 from surefoot.config.deployment import load_deployment
+from surefoot.tools.keys import make_keys
 
 KEYS = [key for key in TOPICS if not key.startswith("status/")]
 CLI = [sys.executable, "-P", "-m", "surefoot.tools.cli"]
@@ -62,6 +63,13 @@ class Ear:
         """The newest message of a topic."""
         with self.lock:
             return decode(TOPICS[key].message, self.heard[key][-1])
+
+    def newest(self, key, seconds=1.0):
+        """The messages of a topic of the last seconds before its newest."""
+        with self.lock:
+            payloads = self.heard[key][-round(seconds * TOPICS[key].rate_hz) :]
+        messages = [decode(TOPICS[key].message, payload) for payload in payloads]
+        return [message for message in messages if message.t > messages[-1].t - seconds]
 
     def t(self):
         """Simulated time [s]; -1 while it has not begun."""
@@ -226,6 +234,148 @@ class Supervised(Ear):
             child.communicate()
         if self.session is not None:
             self.session.close()
+
+
+class Link:
+    """Two network namespaces with one cable between them: two machines, as far as the network goes.
+
+    Attributes:
+        priority: words before each command: a test in real time wants its own of a busy machine.
+    """
+
+    def __init__(self):
+        self.priority: tuple[str, ...] = ()
+        mark = os.getpid()
+        self.names = {"robot": f"sf-robot-{mark}", "laptop": f"sf-laptop-{mark}"}
+        self._devices = {"robot": f"sfr{mark}", "laptop": f"sfl{mark}"}
+        self.address = {"robot": "10.213.77.1", "laptop": "10.213.77.2"}
+        try:
+            for name in self.names.values():
+                self._ip("netns", "add", name)
+            ends = list(self._devices.values())
+            self._ip("link", "add", ends[0], "type", "veth", "peer", "name", ends[1])
+            for machine, device in self._devices.items():
+                self._ip("link", "set", device, "netns", self.names[machine])
+                self.on(machine, "ip", "address", "add", f"{self.address[machine]}/24", "dev", device)
+                self.on(machine, "ip", "link", "set", "lo", "up")
+            self.up()
+        except (OSError, subprocess.CalledProcessError) as error:
+            self.close()
+            pytest.skip(f"network namespaces need root and iproute2: {error} {getattr(error, 'stderr', '')}")
+
+    def command(self, machine, *words):
+        """A command as it is run on a machine."""
+        return ["ip", "netns", "exec", self.names[machine], *self.priority, *words]
+
+    def on(self, machine, *words):
+        """Run a command on a machine."""
+        return subprocess.run(self.command(machine, *words), check=True, capture_output=True, text=True).stdout
+
+    def down(self):
+        """Pull the cable."""
+        self._set("down")
+
+    def up(self):
+        """Plug it in."""
+        self._set("up")
+
+    def spoil(self, loss_percent, delay_ms):
+        """Lose and delay packets both ways; skips the test where the kernel cannot."""
+        try:
+            for machine, device in self._devices.items():
+                netem = ("netem", "loss", f"{loss_percent}%", "delay", f"{delay_ms}ms")
+                self.on(machine, "tc", "qdisc", "add", "dev", device, "root", *netem)
+        except (OSError, subprocess.CalledProcessError) as error:
+            pytest.skip(f"no loss and delay: {getattr(error, 'stderr', error)}")
+
+    def close(self):
+        """Remove both."""
+        for name in self.names.values():
+            subprocess.run(["ip", "netns", "del", name], check=False, capture_output=True)
+
+    def _set(self, state):
+        for machine, device in self._devices.items():
+            self.on(machine, "ip", "link", "set", device, state)
+
+    @staticmethod
+    def _ip(*words):
+        subprocess.run(["ip", *words], check=True, capture_output=True, text=True)
+
+
+class TwoMachines(Ear):
+    """`surefoot run` on two machines by one deployment file; what is heard is heard on the robot's."""
+
+    def __init__(self, tmp_path, link, hosts, *settings):
+        self.namespace = f"test-{os.getpid()}-{tmp_path.name}"
+        self.link, self.folder = link, tmp_path
+        keys = tmp_path / "keys"
+        make_keys(keys, [link.address["robot"]], 1)
+        self.config = tmp_path / "two.toml"
+        lines = [f"{host} = {list(names)!r}" for host, names in hosts.items()]
+        self.config.write_text(
+            f'[terrain]\nkind = "flat"\n[run]\nnamespace = "{self.namespace}"\n'
+            f'[network]\nlisten = "tls/0.0.0.0:7448"\naddress = "{link.address["robot"]}"\nkeys_dir = "{keys}"\n'
+            "[network.hosts]\n" + "\n".join(lines) + "\n"
+        )
+        self.settings = [word for setting in settings for word in ("--set", setting)]
+        self.deployment = load_deployment(self.config, settings)
+        self.runs = {}
+        self.start("laptop")  # it waits for the robot
+        self.start("robot")
+        super().__init__(self.namespace)
+
+    def start(self, machine):
+        """Begin a machine's part of the run."""
+        logs = self.folder / f"logs-{machine}"
+        words = [
+            "run",
+            str(self.config),
+            "--host",
+            machine,
+            "--plain",
+            *self.settings,
+            "--set",
+            f"run.log_dir={logs}",
+        ]
+        with (self.folder / f"said-{machine}").open("ab") as said:
+            self.runs[machine] = subprocess.Popen(
+                self.link.command(machine, *CLI, *words), stdout=said, stderr=said
+            )
+
+    def said(self, machine):
+        """What a machine's part has printed."""
+        return (self.folder / f"said-{machine}").read_text()
+
+    def logs(self):
+        """What both have said, and every log."""
+        paths = [*self.folder.glob("said-*"), *self.folder.glob("logs-*/*.log")]
+        return "\n".join(f"{path.name}: {path.read_text()[-2000:]}" for path in paths)
+
+    def close(self):
+        """End both."""
+        for run in self.runs.values():
+            run.terminate()
+        for run in self.runs.values():
+            try:
+                run.wait(30.0)
+            except subprocess.TimeoutExpired:
+                run.kill()
+                run.wait()
+        self.session.close()
+
+
+@pytest.fixture
+def link():
+    """Two machines and their cable."""
+    made = Link()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def two_machines(tmp_path, link):
+    """Makes a `TwoMachines`."""
+    yield from _closing(lambda *args: TwoMachines(tmp_path, link, *args))
 
 
 @pytest.fixture

@@ -19,6 +19,8 @@ from surefoot.tools.commands import topics
         (["restart", "io"], "io holds robot and bus"),
         (["restart", "engine"], "processes that can be: estimator"),
         (["command", "jump"], "there are forward"),
+        (["run", "flat", "--host", "laptop"], "network: host = 'laptop': hosts has robot"),
+        (["command", "stand", "--connect", "flat"], "robot cannot be reached from another machine"),
         (["child", "flat", "engine"], "no process 'engine'"),
         (["eval", "flat", "--seeds", "x", "--out", "out"], "--seeds 'x'"),
         (["reproduce", "out", "--set", "flat_gaol_m=0.3"], "did you mean flat_goal_m?"),

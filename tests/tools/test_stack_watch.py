@@ -83,7 +83,7 @@ def test_without_a_terminal_the_screen_is_printed_once(stack, capsys):
 
 
 def test_a_visit_knows_the_runs_deployment_and_notices_that_the_stack_has_ended(stack):
-    watch = StackWatch(stack.namespace)
+    watch = StackWatch(lambda: Session(stack.namespace))
     watch.listen(1.0)
     assert watch.healthy and "planks.toml, simulated clock, supervisor 7" in watch.title
     stack.ending = "stopped by command"

@@ -9,7 +9,9 @@ import pytest
 
 from surefoot.bus.messages import MotionReference, ProcessStatus
 from surefoot.bus.topics import PROCESSES
+from surefoot.components import clock_messages as clock
 from surefoot.config.deployment import Deployment, Run
+from surefoot.config.network import Network
 from surefoot.tools import supervisor as supervisor_module
 from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.supervisor import Supervisor
@@ -313,3 +315,52 @@ def test_with_reload_one_that_fails_waits_for_its_source_and_one_that_is_killed_
     mpc.popen.wait()
     desk.ask()
     assert desk.done == ["mpc", "mpc"] and "restarted, 1 of 3" in desk.said
+
+
+HOSTS = {"robot": ("io", "estimator", "wbc", "fsm"), "laptop": ("mpc", "trajopt", "elevation_map")}
+
+
+class Bus:
+    """In place of the session."""
+
+    def __init__(self, *args, **kwargs):
+        self.said = []
+
+    def newest(self, key):
+        return lambda: None
+
+    def subscribe(self, key, receive):
+        pass
+
+    def put(self, key, payload, lossless=True):
+        if key == clock.REQUEST:
+            self.said.append((key, payload))
+
+    def serve(self, key, answer):
+        pass
+
+    def close(self):
+        pass
+
+
+@pytest.mark.parametrize("clock", ["simulated", "monotonic"])
+@pytest.mark.parametrize("host", ["robot", "laptop"])
+def test_each_machine_starts_its_own_processes_and_that_of_io_gives_the_command(
+    tmp_path, monkeypatch, host, clock
+):
+    network = Network(hosts=HOSTS, listen="tls/0.0.0.0:7448", address="10.0.0.1", host=host)
+    run = Run(clock=clock, log_dir=str(tmp_path), namespace="nobody", command="stand")
+    supervisor = Supervisor(tmp_path / "flat.toml", [], Deployment(run=run, network=network))
+    started, bus = [], Bus()
+    monkeypatch.setattr(supervisor_module, "check_keys", lambda network: None)
+    monkeypatch.setattr(supervisor, "_start", started.append)
+    monkeypatch.setattr(supervisor, "_connect", lambda: bus)
+    monkeypatch.setattr(supervisor, "_await_io", lambda each: None)
+    supervisor.picture.processes["fsm"].status = ProcessStatus(process="fsm")
+    assert supervisor.run(lambda picture: "enough") == "enough"
+    assert started == list(HOSTS[host])
+    assert [payload for _, payload in bus.said] == ([b"stand"] if host == "robot" else [])
+    away = {name: watched.host for name, watched in supervisor.picture.processes.items() if watched.host}
+    assert away == {name: other for other in HOSTS if other != host for name in HOSTS[other]}
+    supervisor.restart(next(iter(away)))
+    assert "for the supervisor of" in supervisor.picture.notes[-1] and started == list(HOSTS[host])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from surefoot.tools.commands.bus_call import add_bus_arguments
 from surefoot.tools.commands.call import CallError
 from surefoot.tools.commands.say import say_on_bus
 
@@ -12,7 +13,7 @@ def add(commands: argparse._SubParsersAction) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser("command", help="command the robot of a running stack")
     parser.add_argument("command", help="stand, sit, forward, backward, left, right, stop or damp")
-    parser.add_argument("--namespace", default="surefoot")
+    add_bus_arguments(parser)
     parser.set_defaults(run=_run)
 
 
@@ -22,5 +23,5 @@ def _run(call: argparse.Namespace) -> int:
 
     if call.command not in COMMANDS:
         raise CallError(f"unknown command {call.command!r}; there are {', '.join(COMMANDS)}")
-    say_on_bus(call.namespace, REQUEST, call.command)
+    say_on_bus(call, REQUEST, call.command)
     return 0

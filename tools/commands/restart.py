@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from surefoot.tools.commands.bus_call import add_bus_arguments
 from surefoot.tools.commands.call import CallError
 from surefoot.tools.commands.say import say_on_bus
 
@@ -20,7 +21,7 @@ def add(commands: argparse._SubParsersAction) -> None:
         "restart", help="restart one process of a running stack", description=" ".join(_RESTART.split())
     )
     parser.add_argument("name")
-    parser.add_argument("--namespace", default="surefoot")
+    add_bus_arguments(parser)
     parser.set_defaults(run=_run)
 
 
@@ -31,5 +32,5 @@ def _run(call: argparse.Namespace) -> int:
     if call.name not in PROCESSES or call.name == "io":
         names = ", ".join(name for name in PROCESSES if name != "io")
         raise CallError(f"cannot restart {call.name!r}; processes that can be: {names} (io holds robot and bus)")
-    say_on_bus(call.namespace, REQUEST, f"restart {call.name}")
+    say_on_bus(call, REQUEST, f"restart {call.name}")
     return 0

@@ -28,6 +28,9 @@ import the changed file, once it compiles; one that fails with the new source wa
 
 --record OUT.mcap writes all that is published and what every step has read: see `surefoot info` and `replay`.
 
+With --host NAME it starts what network.hosts gives that machine, and connects to the robot's. Start the robot's
+machine and this one in any order within a minute; each part ends by itself or with Ctrl-C.
+
 exit code: 0 goal reached, time up or ended by the user; 1 fell, stopped or a process failed; 2 the call was wrong
 """
 
@@ -46,6 +49,7 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--for", dest="seconds", type=float, default=0.0, help="end after this much of the run's time"
     )
+    parser.add_argument("--host", metavar="NAME", help="this machine's name in network.hosts; default: that of io")
     parser.add_argument("--plain", action="store_true", help="lines instead of a screen")
     parser.add_argument(
         "--reload", action="store_true", help="restart the processes whose source changes (simulated clock)"
@@ -57,4 +61,5 @@ def add(commands: argparse._SubParsersAction) -> None:
 def _run(call: argparse.Namespace) -> int:
     from surefoot.tools.live_run import live_run
 
-    return live_run(deployment_file(call.config), call.set, call.seconds, call.plain, call.reload, call.record)
+    overrides = [*call.set, f"network.host={call.host}"] if call.host else call.set
+    return live_run(deployment_file(call.config), overrides, call.seconds, call.plain, call.reload, call.record)

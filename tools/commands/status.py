@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 
+from surefoot.tools.commands.bus_call import add_bus_arguments, open_bus
+
 _STATUS = """\
 One screen of a running stack, until Ctrl-C or its end; without a terminal it is printed once.
 
@@ -25,7 +27,7 @@ def add(commands: argparse._SubParsersAction) -> None:
         description=_STATUS,
         epilog="examples: surefoot status\n          surefoot status --json | jq -r .why",
     )
-    parser.add_argument("--namespace", default="surefoot", help="run.namespace of the stack")
+    add_bus_arguments(parser)
     parser.add_argument("--once", action="store_true", help="print it once")
     parser.add_argument("--json", action="store_true", help="once, for a script")
     parser.add_argument("--wait", action="store_true", help="wait for a stack, and for the next when it ends")
@@ -39,5 +41,5 @@ def _run(call: argparse.Namespace) -> int:
 
     console = Console(stderr=call.json)
     if call.once or call.json or not console.is_terminal:
-        return show_once(call.namespace, call.wait, call.json, console)
-    return show_live(call.namespace, call.wait, console)
+        return show_once(lambda: open_bus(call), call.wait, call.json, console)
+    return show_live(lambda: open_bus(call), call.wait, console)

@@ -26,6 +26,10 @@ class BrieflySilentMpc(SilentMpc):
     back_s = 1.8
 
 
+class LateMpc(SilentMpc):
+    back_s = 4.5
+
+
 class SilentScript(Script):
     def step(self, t, inbox, outbox):
         if t < SILENT_S:
@@ -59,3 +63,11 @@ def test_when_it_stays_away_the_robot_is_lowered_gently_and_damped(parts):
     assert "lowered" in commands[-1].solver and (commands[-1].tau == 0.0).all()
     assert max(np.abs(each.v_WB_W[2]) for each in truth if 1.5 < each.t < 3.5) < 0.2
     assert max(2.0 * np.arccos(min(1.0, abs(each.quat_WB[0]))) for each in truth if each.t < 3.5) < 0.1
+
+
+def test_a_policy_that_comes_back_too_late_does_not_make_a_lying_robot_leap_up():
+    truth, commands = run(6.0, Script, LateMpc)
+    lying = [each for each in truth if each.t > LateMpc.back_s]
+    assert max(each.p_WB[2] for each in lying) < 0.1
+    assert max(np.abs(each.v_WB_W[2]) for each in lying) < 0.3  # a leap is faster than 1.5 m/s
+    assert "command sit, then stand" in commands[-1].solver and not commands[-1].tau.any()
