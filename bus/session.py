@@ -41,6 +41,7 @@ class Session:
     """Publishes and subscribes bytes under a namespace.
 
     Attributes:
+        namespace: prefix of every key on the wire.
         where: the endpoint of the hub, for people.
     """
 
@@ -65,7 +66,7 @@ class Session:
             ConfigError: the deployment has no way from this machine to the hub.
         """
         network = network or Network()
-        self._prefix = namespace
+        self.namespace = self._prefix = namespace
         path = socket_path(namespace)
         local = f"unixsock-stream/{path}"
         if hub:
@@ -142,6 +143,26 @@ class Session:
                 index, _, total = str(reply.ok.key_expr).rsplit("/", 1)[1].partition("-")
                 answers[int(index)], count = reply.ok.payload.to_bytes(), int(total)
         return [answers[index] for index in range(count)] if len(answers) == count else []
+
+    def serve_each(self, key: str, answer: Callable[[int], bytes | None]) -> None:
+        """Give `answer(number)`, if there is one, to everyone who asks for a number of a key."""
+        whole = f"{self._prefix}/{key}"
+
+        def on_query(query: zenoh.Query) -> None:
+            with query:
+                number = str(query.key_expr).rsplit("/", 1)[1]
+                payload = answer(int(number)) if number.isdecimal() else None
+                if payload is not None:
+                    query.reply(f"{whole}/{number}", payload)
+
+        self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
+
+    def ask_each(self, key: str, number: int, timeout_s: float = 2.0) -> bytes | None:
+        """What is served under a number of a key; None when nobody has it."""
+        for reply in self._session.get(f"{self._prefix}/{key}/{number}", timeout=timeout_s):
+            if reply.ok is not None:
+                return reply.ok.payload.to_bytes()
+        return None
 
     def close(self) -> None:
         """Leave the bus."""

@@ -14,6 +14,7 @@ from surefoot.bus.session import Session
 from surefoot.bus.topics import PROCESSES, TOPICS, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
+from surefoot.components.deployment_desk import serve_deployment
 from surefoot.components.operator_desk import OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
@@ -43,6 +44,7 @@ class ClockMaster:
         self._end = ProcessEnd(parent)
         self.session = Session(deployment.run.namespace, hub=True, network=deployment.network)
         self._desk = OperatorDesk(self.session)
+        serve_deployment(self.session, deployment)
         table = processes(deployment.mpc.profile)
         self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)
         self._remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
@@ -80,7 +82,8 @@ class ClockMaster:
             for name in self._remote:
                 self.session.put(f"{clock.RELEASE}/{name}", clock.pack_release(clock.STOP_NS, {}))
             self._stepper.deactivate(self.scheduler.t_ns / NS)  # time has ended: one release is all there is
-            time.sleep(0.1)  # let it leave before the session closes
+            self._desk.close()
+            self._stepper.close()
             self.session.close()
         return 0
 

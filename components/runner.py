@@ -10,6 +10,7 @@ from surefoot.bus.session import Session
 from surefoot.bus.topics import nominal_hz, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
+from surefoot.components.deployment_desk import serve_deployment
 from surefoot.components.operator_desk import OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
@@ -68,6 +69,7 @@ class Runner:
                 self._take_over()
             self._follow()
         finally:
+            self._stepper.close()
             self._session.close()
         return 0
 
@@ -221,6 +223,11 @@ class HubRunner(Runner):
         super().__init__(deployment, name, boot, parent)
         self._desk = OperatorDesk(self._session, lossless=False)
         serve_time(self._session, deployment)
+        serve_deployment(self._session, deployment)
+
+    def _let_go(self) -> None:
+        super()._let_go()
+        self._desk.close()
 
     def _live_step(self) -> None:
         self._desk.publish(self._live_t())

@@ -19,8 +19,11 @@ from surefoot.tools.commands import (  # noqa: E402
     child,
     command,
     eval,
+    info,
     keys,
     press,
+    record,
+    replay,
     reproduce,
     restart,
     run,
@@ -29,7 +32,11 @@ from surefoot.tools.commands import (  # noqa: E402
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
-COMMANDS = (run, command, status, restart, child, topics, keys, eval, press, reproduce, bench)
+COMMANDS = (
+    *(run, command, status, restart, child, topics, keys),
+    *(record, info, replay),
+    *(eval, press, reproduce, bench),
+)
 """In the order of the help."""
 
 
