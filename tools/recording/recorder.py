@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import queue
 import shutil
 import time
@@ -46,6 +47,7 @@ class Recorder:
 
     Attributes:
         lost: in words, batches that nobody has any more.
+        cpu_s: once it is over: processor time since it began to wait for batches [s].
     """
 
     def __init__(self, session: Session, path: Path, how: str = "record"):
@@ -57,6 +59,8 @@ class Recorder:
         """
         self._session, self._path = session, path
         self.lost: list[str] = []
+        self.cpu_s = 0.0
+        self._first_ns, self._last_ns = math.inf, 0.0  # on the run's clock
         self._arrived: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self._sources: dict[tuple[str, int], _Source] = {}
         session.subscribe(f"{LOG}/*", lambda key, payload: self._arrived.put(payload))
@@ -72,6 +76,7 @@ class Recorder:
         Raises:
             RecordingError: the disk is full, or cannot be written; what was flushed stands.
         """
+        cpu_s = time.process_time()
         try:
             while not due() and not self._all_ended():
                 self._take(_LOOK_S)
@@ -88,6 +93,15 @@ class Recorder:
                 f"recording ended: {self._path}: {error.strerror}; it can be read up to the last half second "
                 "(`surefoot info`), and the run goes on without it: free some space and `surefoot record` again"
             ) from None
+        self.cpu_s = time.process_time() - cpu_s
+
+    def summary(self) -> str:
+        """What was recorded, once it is over: size, the run's time, and what it has cost."""
+        seconds = max(self._last_ns - self._first_ns, 0.0) / 1e9
+        return (
+            f"recorded {self._path.stat().st_size / 1e6:.1f} MB in {seconds:.1f} s of the run's time, "
+            f"{self.cpu_s:.2f} s CPU, to {self._path}"
+        )
 
     def _take(self, wait_s: float) -> None:
         """Write what has arrived."""
@@ -106,9 +120,7 @@ class Recorder:
         if batch.number < source.next:
             return
         source.early[batch.number] = batch
-        for each in source.ready():
-            source.ended = each.last
-            self._writer.add(each)
+        self._write_ready(source)
         if not source.early:
             source.missed_since = 0.0
         elif not source.missed_since:
@@ -133,9 +145,15 @@ class Recorder:
         first = min(source.early)
         self.lost.append(f"{process}: batches {source.next} to {first - 1} after {boot} restarts")
         source.next = first
+        self._write_ready(source)
+
+    def _write_ready(self, source: _Source) -> None:
         for each in source.ready():
             source.ended = each.last
             self._writer.add(each)
+            if each.records:
+                self._first_ns = min(self._first_ns, each.records[0][1])
+                self._last_ns = max(self._last_ns, each.records[-1][1])
 
     def _give_up(self) -> None:
         """Write what is still there beyond a gap."""
