@@ -52,7 +52,8 @@ def rows(found: dict[str, Any], real_time_factor: float) -> Iterator[tuple[str, 
     recording, latency = found["recording"], found["latency"]
     share = recording["recorder"]
     missed = "" if share <= _RECORDER_SHARE else "  missed"
-    yield "recorder [share of a core]", f"<= {_RECORDER_SHARE:g}", f"{share:6.3f}{missed}"
+    lost = "".join(f"  lost: {each}" for each in recording["lost"])
+    yield "recorder [share of a core]", f"<= {_RECORDER_SHARE:g}", f"{share:6.3f}{missed}{lost}"
     yield "  journals in the processes, in all", "", f"{sum(recording['journals'].values()):6.3f}"
     yield "  handing them over", "", f"{recording['handing_over']:6.3f}"
     yield "  file [MB/s]", "", f"{recording['mb_per_s']:6.2f}"

@@ -45,7 +45,7 @@ def test_the_recorder_that_is_measured_writes_all_that_was_published(walked, tmp
 
 def test_seven_processes_are_measured_and_ended(tmp_path):
     found = {"latency": {"topics": {}, "cpu_us": {}}, "recording": {"journals": {}}}
-    found["recording"] |= {"recorder": 0.11, "handing_over": 0.0, "mb_per_s": 4.0}
+    found["recording"] |= {"recorder": 0.11, "handing_over": 0.0, "mb_per_s": 4.0, "lost": []}
     found["cycle_hz"] = bus_bench.live_cycle_hz(0.02, 0.05, tmp_path)
     assert found["cycle_hz"] > 0.0
     told = {what: (asked, got) for what, asked, got in bus_bench.rows(found, 0.8)}

@@ -19,6 +19,8 @@ from surefoot.tools.recording.about import about
 _LOOK_S = 0.05
 _FLUSH_S = 0.4
 _PATIENCE_S = 0.5  # a batch that is not there by then is asked for
+_ANSWER_S = 1.0  # meanwhile nothing is written
+_GIVE_UP_S = 10.0  # a little longer than a process keeps a batch
 _BEGINNING = 30  # batches: of a process that has just started all are wanted, of an older one those to come
 _HUB_S = 60.0
 _FREE_BYTES = 200_000_000
@@ -30,7 +32,7 @@ class _Source:
     def __init__(self, begin: int) -> None:
         self.next = begin
         self.early: dict[int, Batch] = {}
-        self.missed_since = 0.0
+        self.missed_since = self.ask_at = 0.0
         self.ended = False
 
     def ready(self) -> list[Batch]:
@@ -121,39 +123,56 @@ class Recorder:
             return
         source.early[batch.number] = batch
         self._write_ready(source)
-        if not source.early:
-            source.missed_since = 0.0
-        elif not source.missed_since:
-            source.missed_since = time.monotonic()
 
     def _repair(self) -> None:
-        """Ask the processes for batches that were overtaken by later ones; skip those that nobody has."""
-        for (process, boot), source in list(self._sources.items()):
-            if not source.early or time.monotonic() - source.missed_since < _PATIENCE_S:
-                continue
-            for number in range(source.next, min(source.early)):
-                payload = self._session.ask_each(f"{LOG}/{process}", number)
-                if payload is None:
-                    break  # what is older is not kept either
-                batch = Batch.unpack(payload)
-                if batch.boot == boot:
-                    self._sort(batch)
+        """Ask the processes for batches that were overtaken by later ones; skip those that nobody has.
+
+        A process that does not answer is busy or stopped: it is asked again as long as it may have them, and
+        what comes from the others is written meanwhile.
+        """
+        due = [(source.ask_at, start) for start, source in self._sources.items() if source.early]
+        for ask_at, (process, boot) in sorted(due):
+            source = self._sources[process, boot]
+            if time.monotonic() < ask_at:
+                return
+            try:
+                self._ask_for_missing(process, boot, source)
+            except BusError:
+                source.ask_at = time.monotonic() + _PATIENCE_S
+                if source.ask_at - source.missed_since < _GIVE_UP_S:
+                    return
             if source.early:
                 self._skip(process, boot, source)
+
+    def _ask_for_missing(self, process: str, boot: int, source: _Source) -> None:
+        for number in range(source.next, min(source.early)):
+            payload = self._session.ask_each(f"{LOG}/{process}", number, _ANSWER_S)
+            if payload is None:
+                continue  # a newer one may still be kept
+            batch = Batch.unpack(payload)
+            if batch.boot != boot:
+                return
+            self._sort(batch)
 
     def _skip(self, process: str, boot: int, source: _Source) -> None:
         first = min(source.early)
         self.lost.append(f"{process}: batches {source.next} to {first - 1} after {boot} restarts")
-        source.next = first
+        source.next, source.missed_since = first, 0.0
         self._write_ready(source)
 
     def _write_ready(self, source: _Source) -> None:
+        """Write what follows; the time of what is missing then begins if it has not."""
         for each in source.ready():
             source.ended = each.last
             self._writer.add(each)
             if each.records:
                 self._first_ns = min(self._first_ns, each.records[0][1])
                 self._last_ns = max(self._last_ns, each.records[-1][1])
+        if not source.early:
+            source.missed_since = 0.0
+        elif not source.missed_since:
+            source.missed_since = time.monotonic()
+            source.ask_at = source.missed_since + _PATIENCE_S
 
     def _give_up(self) -> None:
         """Write what is still there beyond a gap."""
