@@ -158,10 +158,15 @@ class Session:
         self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
 
     def ask_each(self, key: str, number: int, timeout_s: float = 2.0) -> bytes | None:
-        """What is served under a number of a key; None when nobody has it."""
+        """What is served under a number of a key; None when nobody has it.
+
+        Raises:
+            BusError: who may have it did not answer in time.
+        """
         for reply in self._session.get(f"{self._prefix}/{key}/{number}", timeout=timeout_s):
-            if reply.ok is not None:
-                return reply.ok.payload.to_bytes()
+            if reply.ok is None:
+                raise BusError(f"no answer on {key}/{number} in {timeout_s:g} s")
+            return reply.ok.payload.to_bytes()
         return None
 
     def close(self) -> None:

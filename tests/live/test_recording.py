@@ -131,7 +131,7 @@ def test_a_full_disk_ends_the_recording_and_not_the_run(stack, recorder):
     live.wait(lambda: taken.process.poll() is not None)
     assert taken.process.returncode == 1
     assert "recording ended" in taken.said() and "the run goes on without it" in taken.said()
-    assert Contents(taken.path).topics["hw/state"].messages > 10
+    assert sum(topic.messages for topic in Contents(taken.path).topics.values()) > 10
     live.go_on(0.5)
     assert live.stands()
 

@@ -50,5 +50,5 @@ def _run(call: argparse.Namespace) -> int:
         session.close()
     for each in recorder.lost:
         print(f"lost: {each}", flush=True)
-    print(f"recorded to {call.out}", flush=True)
+    print(recorder.summary(), flush=True)
     return 1 if recorder.lost else 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import queue
 import shutil
 import time
@@ -18,6 +19,8 @@ from surefoot.tools.recording.about import about
 _LOOK_S = 0.05
 _FLUSH_S = 0.4
 _PATIENCE_S = 0.5  # a batch that is not there by then is asked for
+_ANSWER_S = 1.0  # meanwhile nothing is written
+_GIVE_UP_S = 10.0  # a little longer than a process keeps a batch
 _BEGINNING = 30  # batches: of a process that has just started all are wanted, of an older one those to come
 _HUB_S = 60.0
 _FREE_BYTES = 200_000_000
@@ -29,7 +32,7 @@ class _Source:
     def __init__(self, begin: int) -> None:
         self.next = begin
         self.early: dict[int, Batch] = {}
-        self.missed_since = 0.0
+        self.missed_since = self.ask_at = 0.0
         self.ended = False
 
     def ready(self) -> list[Batch]:
@@ -46,6 +49,7 @@ class Recorder:
 
     Attributes:
         lost: in words, batches that nobody has any more.
+        cpu_s: once it is over: processor time since it began to wait for batches [s].
     """
 
     def __init__(self, session: Session, path: Path, how: str = "record"):
@@ -57,6 +61,8 @@ class Recorder:
         """
         self._session, self._path = session, path
         self.lost: list[str] = []
+        self.cpu_s = 0.0
+        self._first_ns, self._last_ns = math.inf, 0.0  # on the run's clock
         self._arrived: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self._sources: dict[tuple[str, int], _Source] = {}
         session.subscribe(f"{LOG}/*", lambda key, payload: self._arrived.put(payload))
@@ -72,6 +78,7 @@ class Recorder:
         Raises:
             RecordingError: the disk is full, or cannot be written; what was flushed stands.
         """
+        cpu_s = time.process_time()
         try:
             while not due() and not self._all_ended():
                 self._take(_LOOK_S)
@@ -88,6 +95,15 @@ class Recorder:
                 f"recording ended: {self._path}: {error.strerror}; it can be read up to the last half second "
                 "(`surefoot info`), and the run goes on without it: free some space and `surefoot record` again"
             ) from None
+        self.cpu_s = time.process_time() - cpu_s
+
+    def summary(self) -> str:
+        """What was recorded, once it is over: size, the run's time, and what it has cost."""
+        seconds = max(self._last_ns - self._first_ns, 0.0) / 1e9
+        return (
+            f"recorded {self._path.stat().st_size / 1e6:.1f} MB in {seconds:.1f} s of the run's time, "
+            f"{self.cpu_s:.2f} s CPU, to {self._path}"
+        )
 
     def _take(self, wait_s: float) -> None:
         """Write what has arrived."""
@@ -106,36 +122,57 @@ class Recorder:
         if batch.number < source.next:
             return
         source.early[batch.number] = batch
-        for each in source.ready():
-            source.ended = each.last
-            self._writer.add(each)
-        if not source.early:
-            source.missed_since = 0.0
-        elif not source.missed_since:
-            source.missed_since = time.monotonic()
+        self._write_ready(source)
 
     def _repair(self) -> None:
-        """Ask the processes for batches that were overtaken by later ones; skip those that nobody has."""
-        for (process, boot), source in list(self._sources.items()):
-            if not source.early or time.monotonic() - source.missed_since < _PATIENCE_S:
-                continue
-            for number in range(source.next, min(source.early)):
-                payload = self._session.ask_each(f"{LOG}/{process}", number)
-                if payload is None:
-                    break  # what is older is not kept either
-                batch = Batch.unpack(payload)
-                if batch.boot == boot:
-                    self._sort(batch)
+        """Ask the processes for batches that were overtaken by later ones; skip those that nobody has.
+
+        A process that does not answer is busy or stopped: it is asked again as long as it may have them, and
+        what comes from the others is written meanwhile.
+        """
+        due = [(source.ask_at, start) for start, source in self._sources.items() if source.early]
+        for ask_at, (process, boot) in sorted(due):
+            source = self._sources[process, boot]
+            if time.monotonic() < ask_at:
+                return
+            try:
+                self._ask_for_missing(process, boot, source)
+            except BusError:
+                source.ask_at = time.monotonic() + _PATIENCE_S
+                if source.ask_at - source.missed_since < _GIVE_UP_S:
+                    return
             if source.early:
                 self._skip(process, boot, source)
+
+    def _ask_for_missing(self, process: str, boot: int, source: _Source) -> None:
+        for number in range(source.next, min(source.early)):
+            payload = self._session.ask_each(f"{LOG}/{process}", number, _ANSWER_S)
+            if payload is None:
+                continue  # a newer one may still be kept
+            batch = Batch.unpack(payload)
+            if batch.boot != boot:
+                return
+            self._sort(batch)
 
     def _skip(self, process: str, boot: int, source: _Source) -> None:
         first = min(source.early)
         self.lost.append(f"{process}: batches {source.next} to {first - 1} after {boot} restarts")
-        source.next = first
+        source.next, source.missed_since = first, 0.0
+        self._write_ready(source)
+
+    def _write_ready(self, source: _Source) -> None:
+        """Write what follows; the time of what is missing then begins if it has not."""
         for each in source.ready():
             source.ended = each.last
             self._writer.add(each)
+            if each.records:
+                self._first_ns = min(self._first_ns, each.records[0][1])
+                self._last_ns = max(self._last_ns, each.records[-1][1])
+        if not source.early:
+            source.missed_since = 0.0
+        elif not source.missed_since:
+            source.missed_since = time.monotonic()
+            source.ask_at = source.missed_since + _PATIENCE_S
 
     def _give_up(self) -> None:
         """Write what is still there beyond a gap."""
