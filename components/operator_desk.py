@@ -7,7 +7,8 @@ from collections import deque
 
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import OperatorCommand
-from surefoot.bus.recording.journal import LOG, Journal
+from surefoot.bus.recording.journal import Journal
+from surefoot.bus.service_keys import LOG
 from surefoot.bus.session import Session
 from surefoot.components import clock_messages as clock
 from surefoot.components.topic_buffer import KEPT

@@ -8,7 +8,8 @@ from math import inf
 
 from surefoot.bus.codec import check, decode, encode
 from surefoot.bus.message import Message
-from surefoot.bus.recording.journal import LOG, Journal
+from surefoot.bus.recording.journal import Journal
+from surefoot.bus.service_keys import LOG
 from surefoot.bus.session import Session
 from surefoot.bus.topics import TOPICS, Process
 from surefoot.components import clock_messages as clock

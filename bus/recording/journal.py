@@ -14,9 +14,7 @@ from surefoot.bus.codec import encode
 from surefoot.bus.errors import MessageError
 from surefoot.bus.message import Message
 from surefoot.bus.recording.step_log import CHECKPOINT, STEPS, Checkpoint, StepLog
-
-LOG = "log"
-"""Key prefix on the bus; the process's name follows."""
+from surefoot.bus.service_keys import LOG
 
 CHECKPOINT_S = 1.0
 """A replay can begin at every second of a run."""

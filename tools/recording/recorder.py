@@ -10,8 +10,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from surefoot.bus.errors import BusError, MessageError, RecordingError
-from surefoot.bus.recording.journal import LOG, Batch
+from surefoot.bus.recording.journal import Batch
 from surefoot.bus.recording.writer import RecordingWriter
+from surefoot.bus.service_keys import LOG
 from surefoot.bus.session import Session
 from surefoot.components.deployment_desk import ask_deployment
 from surefoot.tools.recording.about import about

@@ -7,8 +7,9 @@ import pytest
 
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import OperatorCommand
-from surefoot.bus.recording.journal import LOG, Batch
+from surefoot.bus.recording.journal import Batch
 from surefoot.bus.recording.reader import Recording
+from surefoot.bus.service_keys import LOG
 from surefoot.bus.session import Session
 from surefoot.components.deployment_desk import serve_deployment
 from surefoot.config.deployment import Deployment
