@@ -16,7 +16,7 @@ from surefoot.bus.message import FieldSpec, Message, specs
 _TYPE = "message"
 """The field that says which message it is: unknown fields are ignored, missing ones blank; any map would do."""
 
-_LITTLE = {"float64": "<f8", "float32": "<f4", "int64": "<i8", "bool": "?"}
+_LITTLE = {"float64": "<f8", "float32": "<f4", "int64": "<i8", "uint8": "u1", "bool": "?"}
 
 _LONGEST = 2**31 - 1
 """Of an axis: the product with a zero beside it says nothing of the others."""

@@ -7,3 +7,7 @@ class BusError(RuntimeError):
 
 class MessageError(BusError):
     """A message that is not what its topic promises: wrong type, shape, or a value that is not finite."""
+
+
+class RecordingError(BusError):
+    """A recording that cannot be read or written; says which file, what is wrong and what can be done."""

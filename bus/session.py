@@ -52,6 +52,7 @@ class Session:
     """Publishes and subscribes bytes under a namespace.
 
     Attributes:
+        namespace: prefix of every key on the wire.
         where: the endpoint of the hub, for people.
         mark: what it publishes bears it; no other session has the same.
     """
@@ -77,7 +78,7 @@ class Session:
             ConfigError: the deployment has no way from this machine to the hub.
         """
         network = network or Network()
-        self._prefix = namespace
+        self.namespace = self._prefix = namespace
         path = socket_path(namespace)
         local = f"unixsock-stream/{path}"
         if hub:
@@ -150,25 +151,56 @@ class Session:
 
         def on_query(query: zenoh.Query) -> None:
             with query:
-                for index, payload in enumerate(answer()):
-                    query.reply(f"{whole}/{index}", payload, attachment=self.mark)
+                answers = answer()
+                for index, payload in enumerate(answers):
+                    query.reply(f"{whole}/{index}-{len(answers)}", payload, attachment=self.mark)
 
         self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
 
     def ask(self, key: str, timeout_s: float = 2.0) -> list[Marked]:
-        """What is served under a key, in order; empty when nobody serves it.
+        """What is served under a key, in order; empty when nobody serves it, or not all of it has come in time.
 
         Of two that serve it everything comes, first all of one of them.
         """
         replies = self._session.get(
             f"{self._prefix}/{key}/*", timeout=timeout_s, consolidation=zenoh.ConsolidationMode.NONE
         )
-        answers = {}
+        answers: dict[bytes, dict[int, Marked]] = {}
+        counts: dict[bytes, int] = {}
         for reply in replies:
-            if reply.ok is not None and (index := str(reply.ok.key_expr).rsplit("/", 1)[1]).isdecimal():
-                payload = _marked(reply.ok)
-                answers[payload.writer, int(index)] = payload
-        return [answers[index] for index in sorted(answers)]
+            if reply.ok is not None:
+                index, _, total = str(reply.ok.key_expr).rsplit("/", 1)[1].partition("-")
+                if index.isdecimal() and total.isdecimal():
+                    payload = _marked(reply.ok)
+                    answers.setdefault(payload.writer, {})[int(index)] = payload
+                    counts[payload.writer] = int(total)
+        whole = [writer for writer in sorted(answers) if len(answers[writer]) == counts[writer]]
+        return [answers[writer][index] for writer in whole for index in sorted(answers[writer])]
+
+    def serve_each(self, key: str, answer: Callable[[int], bytes | None]) -> None:
+        """Give `answer(number)`, if there is one, to everyone who asks for a number of a key."""
+        whole = f"{self._prefix}/{key}"
+
+        def on_query(query: zenoh.Query) -> None:
+            with query:
+                number = str(query.key_expr).rsplit("/", 1)[1]
+                payload = answer(int(number)) if number.isdecimal() else None
+                if payload is not None:
+                    query.reply(f"{whole}/{number}", payload)
+
+        self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
+
+    def ask_each(self, key: str, number: int, timeout_s: float = 2.0) -> bytes | None:
+        """What is served under a number of a key; None when nobody has it.
+
+        Raises:
+            BusError: who may have it did not answer in time.
+        """
+        for reply in self._session.get(f"{self._prefix}/{key}/{number}", timeout=timeout_s):
+            if reply.ok is None:
+                raise BusError(f"no answer on {key}/{number} in {timeout_s:g} s")
+            return reply.ok.payload.to_bytes()
+        return None
 
     def close(self) -> None:
         """Leave the bus."""

@@ -15,6 +15,7 @@ from surefoot.bus.session import Marked, Session
 from surefoot.bus.topics import PROCESSES, TOPICS, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
+from surefoot.components.deployment_desk import serve_deployment
 from surefoot.components.operator_desk import OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
@@ -49,6 +50,7 @@ class ClockMaster:
     def __init__(self, deployment: Deployment, boot: int = 0, parent: int = 0):
         self._end = ProcessEnd(parent)
         self.session = Session(deployment.run.namespace, hub=True, network=deployment.network)
+        serve_deployment(self.session, deployment)
         table = processes(deployment.mpc.profile)
         self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)
         self.refuse = self._stepper.buffers.drop
@@ -89,7 +91,8 @@ class ClockMaster:
             for name in self._remote:
                 self.session.put(f"{clock.RELEASE}/{name}", clock.pack_release(clock.Release(clock.STOP_NS, {})))
             self._stepper.deactivate(self.scheduler.t_ns / NS)  # time has ended: one release is all there is
-            time.sleep(0.1)  # let it leave before the session closes
+            self._desk.close()
+            self._stepper.close()
             self.session.close()
         return 0
 

@@ -75,6 +75,11 @@ class Outbox:
         self._boot = boot
 
     @property
+    def boot(self) -> int:
+        """Of the messages."""
+        return self._boot
+
+    @property
     def sent(self) -> dict[str, int]:
         """How many messages each topic has had."""
         return dict(self._seq)
@@ -108,6 +113,7 @@ class Component:
 
     Attributes:
         memory: what it carries from one step to the next.
+        remembers: that is all there is to it; a robot, or its simulator, cannot be put back.
         complete: streams of which it needs every message; of others the newest is enough on the monotonic clock.
         trouble: in words why the last step could not do its work; empty when it could. The process's status
             tells it.
@@ -118,6 +124,7 @@ class Component:
     outputs: ClassVar[tuple[str, ...]] = ()
 
     memory: ClassVar[Memory] = Memory()
+    remembers: ClassVar[bool] = True
 
     complete: tuple[str, ...] = ()
     trouble: str = ""

@@ -10,6 +10,7 @@ import numpy as np
 
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import ProcessStatus
+from surefoot.bus.recording.journal import Journal
 from surefoot.bus.session import Session
 from surefoot.bus.topics import Process, nominal_hz
 from surefoot.components.component import Component, Inbox, Life
@@ -31,12 +32,19 @@ class Health:
     """
 
     def __init__(
-        self, component: Component, session: Session, buffers: TopicBuffers, process: Process, boot: int = 0
+        self,
+        component: Component,
+        session: Session,
+        buffers: TopicBuffers,
+        process: Process,
+        journal: Journal,
+        boot: int = 0,
     ):
         self.life, self.reason, self.lost, self.note = Life.INIT, "", "", ""
         self.overruns = self.steps = 0
         self.t = 0.0
         self._component, self._session, self._buffers, self.boot = component, session, buffers, boot
+        self._journal = journal
         self._nominal_hz = nominal_hz(process)
         self._recent: deque[float] = deque(maxlen=2000)
         self._told, self._told_steps = time.monotonic(), 0
@@ -79,7 +87,9 @@ class Health:
             input_age_s=np.array(ages),
         )
         self._seq += 1
-        self._session.put(f"status/{self._component.name}", encode(status), lossless=False)
+        key, payload = f"status/{self._component.name}", encode(status)
+        self._session.put(key, payload, lossless=False)
+        self._journal.note_message(t, key, status.seq, payload)
 
     def _words(self) -> str:
         """All there is to say, the gravest first."""

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from time import perf_counter
 
-from surefoot.bus.codec import check
+from surefoot.bus.codec import check, encode
 from surefoot.bus.message import Message
 from surefoot.bus.messages import OperatorCommand
+from surefoot.bus.recording.journal import Journal
 from surefoot.bus.topics import PROCESSES, processes
+from surefoot.components.clock_messages import pack_snapshot
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.registry import component_class
 from surefoot.components.scheduler import NS, Scheduler
@@ -19,19 +21,29 @@ Listener = Callable[[str, Message], None]
 
 
 class LocalExecutor:
-    """Steps one component in this process; its output waits until the scheduler collects it."""
+    """Steps one component in this process; its output waits until the scheduler collects it.
+
+    Attributes:
+        component, inbox, active: what is stepped, what it reads, and whether it steps already.
+        step_ms: wall time of every step.
+        journal: what it reads and publishes is noted there, if one is given before the first step.
+    """
 
     def __init__(self, component: Component, bus: LocalBus):
         self.component = component
         self.inbox = Inbox(component.inputs)
         self.active = False
         self.step_ms: list[float] = []
+        self.journal: Journal | None = None
+        self._t = 0.0
         self._bus = bus
         self._pending: list[tuple[str, Message]] = []
         self._outbox = Outbox(component.outputs, lambda key, message: self._pending.append((key, check(message))))
         self._read = dict.fromkeys(component.inputs, 0)
 
     def release(self, t_ns: int, visible: dict[str, int]) -> None:
+        if self.journal is not None and not self.journal.begun:
+            self._note_checkpoint(self.journal, fresh=True)
         for key, count in self._read.items():
             self._read[key] = self._bus.deliver(key, count, self.inbox)
         t = t_ns / NS
@@ -41,6 +53,9 @@ class LocalExecutor:
         if self.active:
             self.component.step(t, self.inbox, self._outbox)
         self.step_ms.append(1e3 * (perf_counter() - start))
+        if self.journal is not None:
+            self.journal.note_step(t, [self.inbox.new(key) for key in self.component.inputs])
+        self._t = t
         self.inbox.clear_new()
 
     def collect(self) -> dict[str, int]:
@@ -48,8 +63,17 @@ class LocalExecutor:
         for key, message in self._pending:
             self._bus.show(key, message)
             counts[key] = counts.get(key, 0) + 1
+            if self.journal is not None:
+                self.journal.note_message(self._t, key, message.seq, encode(message))
         self._pending.clear()
+        if self.journal is not None and self.component.remembers and self.journal.checkpoint_is_due(self._t):
+            self._note_checkpoint(self.journal)
         return counts
+
+    def _note_checkpoint(self, journal: Journal, fresh: bool = False) -> None:
+        state = b"" if fresh else pack_snapshot(self.component.snapshot())
+        latest = {key: self.inbox.latest(key) for key in self.component.inputs}
+        journal.note_checkpoint(self._t, state, latest, self._outbox.sent, self._outbox.boot, self.active, fresh)
 
 
 class LocalBus:

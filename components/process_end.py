@@ -18,13 +18,19 @@ class ProcessEnd:
         """`parent`: the process that must live on; 0 the one that started this one."""
         self._event = Event()
         for number in (signal.SIGTERM, signal.SIGINT):
-            signal.signal(number, lambda *_: self._event.set())
+            signal.signal(number, self._on_signal)
         Thread(target=self._watch, args=(parent or os.getppid(),), daemon=True).start()
 
     @property
     def due(self) -> bool:
         """True once the process has to end."""
         return self._event.is_set()
+
+    def _on_signal(self, number: int, frame: object) -> None:
+        """End in order; a second Ctrl-C breaks off a step that hangs."""
+        if number == signal.SIGINT and self._event.is_set():
+            raise KeyboardInterrupt
+        self._event.set()
 
     def _watch(self, parent: int) -> None:
         while os.getppid() == parent:

@@ -11,6 +11,7 @@ from surefoot.bus.session import Marked, Session
 from surefoot.bus.topics import nominal_hz, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
+from surefoot.components.deployment_desk import serve_deployment
 from surefoot.components.operator_desk import OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
@@ -69,6 +70,7 @@ class Runner:
                 self._take_over()
             self._follow()
         finally:
+            self._stepper.close()
             self._session.close()
         return 0
 
@@ -234,6 +236,11 @@ class HubRunner(Runner):
         super().__init__(deployment, name, boot, parent)
         self._desk = OperatorDesk(self._session, self._stepper.buffers.drop, lossless=False)
         serve_time(self._session, deployment)
+        serve_deployment(self._session, deployment)
+
+    def _let_go(self) -> None:
+        super()._let_go()
+        self._desk.close()
 
     def _live_step(self) -> None:
         self._desk.publish(self._live_t())

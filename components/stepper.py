@@ -8,6 +8,8 @@ from math import inf
 
 from surefoot.bus.codec import check, decode, encode
 from surefoot.bus.message import Message
+from surefoot.bus.recording.journal import Journal
+from surefoot.bus.service_keys import LOG
 from surefoot.bus.session import Session
 from surefoot.bus.topics import TOPICS, Process
 from surefoot.components import clock_messages as clock
@@ -18,6 +20,7 @@ from surefoot.components.relief import Place
 from surefoot.components.topic_buffer import TopicBuffers
 
 _INPUT_TIMEOUT_S = 10.0
+_LEAVE_S = 0.1
 _ASK_AGAIN_S = 0.3
 
 
@@ -28,6 +31,7 @@ class Stepper:
         component: the component.
         buffers: what has arrived of its inputs.
         outbox: numbers its messages.
+        journal: what it reads and publishes, for a recorder.
         health: what is told of it.
         look: called while it waits for a message; raises when there is no reason to wait on.
     """
@@ -48,18 +52,23 @@ class Stepper:
         trigger = None if simulated else process.trigger
         self.buffers = TopicBuffers(component.inputs, trigger, component.complete)
         self.outbox = Outbox(component.outputs, self._send, boot)
-        self.health = Health(component, session, self.buffers, process, boot)
+        self.journal = Journal(component.name, component.inputs, boot)
+        self.health = Health(component, session, self.buffers, process, self.journal, boot)
         self.look: Callable[[], None] = lambda: None
         self._session = session
         self._inbox = Inbox(component.inputs)
         self._outgoing: list[tuple[str, Message]] = []
         self._lossless = {key: simulated or not TOPICS[key].rate_hz for key in component.outputs}
-        self._active = False
+        self._boot = boot
+        self._active = self._restored = False
         self._t = 0.0
 
     def connect(self) -> None:
         """Begin to listen to the inputs."""
+        if self._boot == 0:
+            self._begin_journal()
         self.buffers.connect(self._session)
+        self._session.serve_each(f"{LOG}/{self.component.name}", self.journal.kept)
 
     def resume(self, resume: clock.Resume, visible: dict[str, int]) -> None:
         """Take the place of a process that is gone, where its last finished step left it."""
@@ -69,22 +78,25 @@ class Stepper:
         if resume.snapshot:
             try:
                 self.component.restore(clock.unpack_snapshot(resume.snapshot))
-                self._active = True
+                self._active = self._restored = True
             except ForeignMemory as error:  # of code that has changed since
                 self.health.note = f"began anew: {error}"
 
     def read_visible(self, visible: dict[str, int]) -> None:
         """Take exactly the messages that are visible in simulated time."""
+        self._begin_journal()
         self.health.lost = self.buffers.deliver_visible(visible, self._inbox, _INPUT_TIMEOUT_S, self._kept)
 
     def read_all(self) -> None:
         """Take everything that has arrived."""
+        self._begin_journal()
         self.buffers.deliver_all(self._inbox)
 
     def step(self, t: float) -> None:
         """Activate or step at time `t` [s] on what was read."""
         begun, self._t = time.perf_counter(), t
         component, health = self.component, self.health
+        self.journal.note_step(t, [self._inbox.new(key) for key in component.inputs])  # also of one that fails
         if not self._active:
             self._active = component.activate(t, self._inbox)
             health.life = Life.RUN if self._active else Life.ACTIVATING
@@ -100,6 +112,7 @@ class Stepper:
         failed = self.health.life is Life.FAILED
         done = self.component.deactivate(t, self._inbox, self.outbox)
         self._inbox.clear_new()
+        self._t = t
         if not failed:
             self.health.life = Life.IDLE if done else Life.DEACTIVATING
         return done
@@ -110,8 +123,13 @@ class Stepper:
         for key, message in self._outgoing:
             payload = encode(message)
             self._session.put(key, payload, self._lossless[key])
+            self.journal.note_message(self._t, key, message.seq, payload)
             sent.setdefault(key, []).append(payload)
         self._outgoing.clear()
+        if self.component.remembers and self.journal.checkpoint_is_due(self._t):
+            self._note_checkpoint()
+        if self.journal.batch_is_due():
+            self._log()
         return sent
 
     def snapshot(self) -> bytes:
@@ -160,6 +178,7 @@ class Stepper:
             self.component.restore(clock.unpack_snapshot(place.snapshot))
             self.outbox.continue_from(place.sent, place.boot)
             self.health.boot, self._active = place.boot, True
+            self._restored, self._t = True, place.t
             return 0.0
         if place.snapshot:
             self.health.note = f"began anew: its memory was {age:.3f} s old, limit {limit:g} s"
@@ -174,6 +193,31 @@ class Stepper:
         self._outgoing.clear()  # half a step
         self.health.life, self.health.reason = Life.FAILED, f"{type(error).__name__}: {error}"
         self.tell(self.health.t, now=True)
+
+    def close(self) -> None:
+        """Hand over the end of the journal."""
+        if self._log(last=True):
+            time.sleep(_LEAVE_S)  # let it leave before the session closes
+
+    def _begin_journal(self) -> None:
+        """Note the state before anything is read."""
+        if not self.journal.begun:
+            self._note_checkpoint(fresh=not self._restored)
+
+    def _note_checkpoint(self, fresh: bool = False) -> None:
+        state = b"" if fresh else clock.pack_snapshot(self.component.snapshot())
+        latest = {key: self._inbox.latest(key) for key in self.component.inputs}
+        self.journal.note_checkpoint(
+            self._t, state, latest, self.outbox.sent, self.outbox.boot, self._active, fresh
+        )
+
+    def _log(self, last: bool = False) -> bool:
+        """Hand over what the journal holds; whether that was anything."""
+        payload = self.journal.take_packed(last)
+        if payload is not None:
+            # Never held up by a recorder: it asks again for what it has missed.
+            self._session.put(f"{LOG}/{self.component.name}", payload, lossless=False)
+        return payload is not None
 
     def _kept(self, key: str) -> Sequence[bytes] | None:
         """The last messages of a topic, from who keeps them; None when nobody answers."""

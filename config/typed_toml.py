@@ -124,6 +124,36 @@ def to_table(value: Any) -> Any:
     return value
 
 
+def without_unknown(cls: type, table: dict[str, Any], path: str = "") -> tuple[dict[str, Any], list[str]]:
+    """What this version knows of a table that another version wrote.
+
+    Args:
+        cls: the dataclass it is for.
+        table: as `to_table` made it.
+        path: dotted path of the table.
+
+    Returns:
+        The table without keys that `cls` has not, and without those that are None; the paths of the former.
+    """
+    hints = typing.get_type_hints(cls)
+    known: dict[str, Any] = {}
+    unknown: list[str] = []
+    for key, value in table.items():
+        where = _join(path, key)
+        if key not in hints:
+            unknown.append(where)
+        elif value is not None:
+            inner = next(
+                (each for each in (hints[key], *typing.get_args(hints[key])) if dataclasses.is_dataclass(each)),
+                None,
+            )
+            if inner is not None and isinstance(value, dict):
+                value, more = without_unknown(typing.cast(type, inner), value, where)
+                unknown += more
+            known[key] = value
+    return known, unknown
+
+
 def _join(path: str, key: str) -> str:
     return f"{path}.{key}" if path else key
 

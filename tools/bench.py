@@ -21,6 +21,7 @@ from surefoot.config.deployment import Deployment, Run
 from surefoot.config.terrain import Terrain
 from surefoot.hw.mujoco.backend import MujocoRobot
 from surefoot.hw.robot_interface import MotorLaw
+from surefoot.tools.bus_bench import bus_bench, rows
 
 WARM_UP_S = 4.0
 """Simulated time until the robot stands and every component is at work."""
@@ -43,19 +44,21 @@ _REAL_TIME_FACTOR = 0.6
 
 
 def bench(say: Callable[[str], None] = print) -> dict:
-    """Measure and print a table `what | asked | got`; takes about a minute.
+    """Measure and print a table `what | asked | got`; takes about two minutes.
 
     Returns:
         `calibration_ms`; `step_ms`: median, p99 and maximum for each component; `mpc_stage_ms`: the same for
         each stage of an mpc tick; `trajopt_ms`: mean, median, maximum and number of solves; `image_ms` of the
         simulated depth camera and `map_ms` from an image to the map with it: median, p99 and maximum;
-        `real_time_factor` of the whole stack; `references`: how many had a leg swing and how many one probe.
+        `real_time_factor` of the whole stack; `references`: how many had a leg swing and how many one probe;
+        `bus` as of `bus_bench`.
     """
     found: dict = {"calibration_ms": calibration_ms()}
     witness = _Witness()
     found |= _walk(witness)
     found["trajopt_ms"] = _trajopt(witness)
     found |= _sight()
+    found["bus"] = bus_bench()
     _tell(found, say)
     return found
 
@@ -180,7 +183,7 @@ def _spread(times: Iterable[float]) -> dict[str, float]:
 
 def _tell(found: dict, say: Callable[[str], None]) -> None:
     def row(what: str, asked: str, got: str) -> None:
-        say(f"{what:40} | {asked:>8} | {got}")
+        say(f"{what:42} | {asked:>8} | {got}")
 
     def spread(times: dict[str, float]) -> str:
         return f"{times['p50']:6.2f} {times['p99']:6.2f} {times['max']:6.2f}"
@@ -193,6 +196,8 @@ def _tell(found: dict, say: Callable[[str], None]) -> None:
     missed = "" if factor >= _REAL_TIME_FACTOR else "  missed"
     row("lockstep real-time factor", f">= {_REAL_TIME_FACTOR:g}", f"{factor:6.2f}{missed}")
     row("calibration [ms]", "", f"{found['calibration_ms']:6.2f}")
+    for of_bus in rows(found["bus"], factor):
+        row(*of_bus)
     row("median, p99, max of a tick [ms]", "", "")
     for name, times in found["step_ms"].items():
         row(f"  {name}", "", spread(times))

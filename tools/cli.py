@@ -20,8 +20,11 @@ from surefoot.tools.commands import (  # noqa: E402
     command,
     eval,
     faults,
+    info,
     keys,
     press,
+    record,
+    replay,
     reproduce,
     restart,
     run,
@@ -30,7 +33,11 @@ from surefoot.tools.commands import (  # noqa: E402
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
-COMMANDS = (run, command, status, restart, child, topics, keys, eval, press, reproduce, faults, bench)
+COMMANDS = (
+    *(run, command, status, restart, child, topics, keys),
+    *(record, info, replay),
+    *(eval, press, reproduce, faults, bench),
+)
 """In the order of the help."""
 
 

@@ -11,16 +11,28 @@ from rich.console import Console
 from rich.live import Live
 
 from surefoot.config.deployment import Deployment, load_deployment
+from surefoot.tools.commands.call import CallError
+from surefoot.tools.diagnosis import why_nothing_moves
 from surefoot.tools.picture import Picture
+from surefoot.tools.recording.recorder import check_space
+from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.solve_time import light_profile_reason
 from surefoot.tools.status_screen import TOLD, event_line, process_table, screen
-from surefoot.tools.supervisor import Supervisor
+from surefoot.tools.supervisor import ENDS_RUN, Supervisor
 from surefoot.tools.verdict import Verdict, verdict
 
 _LINE_S = 10.0
+_WHY_S = 3.0
 
 
-def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) -> int:
+def live_run(
+    config: Path,
+    overrides: list[str],
+    seconds: float,
+    plain: bool,
+    reload: bool = False,
+    record: Path | None = None,
+) -> int:
     """Run a deployment until it is over or the user ends it.
 
     Args:
@@ -28,13 +40,25 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
         overrides: assignments `section.key=value`.
         seconds: end after this much of the run's time; 0 no limit.
         plain: lines even where there is a terminal.
+        reload: restart the processes whose source changes.
+        record: write everything to this file.
 
     Returns:
         0 the goal was reached, or it was ended in time or by the user; 1 it failed.
+
+    Raises:
+        CallError: `reload` in real time.
+        RecordingError: there is no folder for the recording.
     """
     console = Console(soft_wrap=True)
     overrides = list(overrides)
     deployment = load_deployment(config, overrides)
+    if reload and deployment.run.clock != "simulated":
+        raise CallError(
+            "--reload needs run.clock = 'simulated': in real time nothing waits for a process that is restarted"
+        )
+    if record is not None and not deployment.network.at_hub:
+        raise CallError(f"--record is for {deployment.network.hub}, the machine of io: all journals meet there")
     note = ""
     if _profile_is_open(deployment, overrides):
         console.print("measuring how long a solve of the MPC takes here")
@@ -42,7 +66,10 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
         if note:
             overrides.append("mpc.profile=light")
             deployment = load_deployment(config, overrides)
-    supervisor = Supervisor(config, overrides, deployment)
+    supervisor = Supervisor(config, overrides, deployment, SourceWatch() if reload else None, record)
+    warning = check_space(record) if record is not None else ""
+    if warning:
+        supervisor.note(warning)
     if note:
         supervisor.note(note)
     interactive = console.is_terminal and not plain
@@ -56,13 +83,17 @@ def live_run(config: Path, overrides: list[str], seconds: float, plain: bool) ->
         return state.reason if state.over else ""
 
     console.print(f"{title}; logs in {deployment.run.log_dir}/; Ctrl-C ends the run")
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for number in ENDS_RUN:
+        if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has it
+            signal.signal(number, signal.default_int_handler)
     try:
         if interactive:
-            with Live(console=console, screen=True, auto_refresh=False) as live:
+            # The screen wraps long lines; the console that prints on leaves that to the terminal.
+            with Live(console=Console(), screen=True, auto_refresh=False) as live:
 
                 def draw(picture: Picture) -> None:
-                    live.update(screen(picture, state, deployment.fsm.alternatives, title), refresh=True)
+                    closing = f"{state.reason}. {state.advice}" if state.reason else ""
+                    live.update(screen(picture, deployment.fsm.alternatives, title, closing), refresh=True)
 
                 reason = supervisor.run(until, _Seldom(0.2, draw))
         else:
@@ -105,6 +136,8 @@ class _Lines:
         self._events = self._notes = 0
         self._last = time.monotonic()
         self._said: dict[str, str] = {}
+        self._why = self._why_said = ""
+        self._why_since = 0.0
 
     def __call__(self, picture: Picture) -> None:
         say = self._console.print
@@ -116,6 +149,7 @@ class _Lines:
             say(f"supervisor: {note}", markup=False, highlight=False)
         self._events, self._notes = len(events), len(notes)
         self._health(picture)
+        self._why_nothing_moves(picture)
         now = time.monotonic()
         if picture.reference is not None and now - self._last >= _LINE_S:
             self._last = now
@@ -124,6 +158,19 @@ class _Lines:
                 f"{picture.real_time_factor(recent=True):.2f}, {picture.counts['accepted']} footholds",
                 highlight=False,
             )
+
+    def _why_nothing_moves(self, picture: Picture) -> None:
+        """The sentence when it has stood for a while and is another than the last."""
+        why = why_nothing_moves(picture)
+        words = re.sub(r"[\d.]+", "#", why)
+        now = time.monotonic()
+        if words != self._why:
+            self._why, self._why_since = words, now
+        elif why and words != self._why_said and now - self._why_since > _WHY_S:
+            self._why_said = words
+            self._console.print(f"{picture.t:8.2f} s  nothing moves: {why}", markup=False, highlight=False)
+        if not why:
+            self._why_said = ""
 
     def _health(self, picture: Picture) -> None:
         """A process's reason when it changes; a figure that counts up is no change."""

@@ -10,12 +10,16 @@ from dataclasses import dataclass, field
 import numpy as np
 import pinocchio as pin
 
-from surefoot.bus.messages import FsmEvent, MotionReference, ProcessStatus, StateEstimate
+from surefoot.bus.messages import FsmEvent, HardwareState, MotionReference, ProcessStatus, StateEstimate
 from surefoot.bus.topics import PROCESSES
 from surefoot.components.fsm.fsm import DIRECTIONS
 from surefoot.components.fsm.support_triangle import SupportTriangle
 from surefoot.components.robot_model import build_model
 from surefoot.config.robot import Robot
+from surefoot.tools.supervisor_messages import Notice
+
+RATE_BAND = 0.2
+"""A rate is well within so much of nominal."""
 
 _RECENT_S = 10.0
 
@@ -35,6 +39,18 @@ class Watched:
     crashes: int = 0
     status: ProcessStatus | None = None
     heard: float = 0.0  # monotonic clock of the last status [s]
+    slow: int = 0  # statuses in a row whose rate was below nominal
+    lent_to: int = 0  # id of the process that stands in for it; 0 none does
+    out: str = ""  # in words why none runs
+    told_silent_s: float = -1.0  # since a supervisor elsewhere heard of it; -1 it never has
+
+    def silent_s(self, now: float) -> float:
+        """How long it has not been heard, here or by the supervisor; -1 it never was.
+
+        Args:
+            now: monotonic clock [s].
+        """
+        return now - self.heard if self.status is not None else self.told_silent_s
 
     @property
     def exit_code(self) -> int | None:
@@ -48,25 +64,32 @@ class Picture:
 
     Attributes:
         processes: by name.
-        reference, estimate: the newest messages, or None.
+        reference, estimate, hardware: the newest messages, or None.
         margin_m: distance of the centre of mass from the edge of the triangle of the feet other than the leg
             that is moved or probed, positive inside; None while four feet stand.
         events: of the state machine, oldest first.
         counts: how many events of each kind.
         displacement_m: the largest of a foot on the ground.
+        command: what was commanded last; empty before.
         direction: of the walk that was commanded last; empty before.
         notes: what the supervisor did, in words.
+        ending: in words why the run ends; empty while it goes on.
+        simulated: time is known to wait for every process.
     """
 
     processes: dict[str, Watched] = field(default_factory=lambda: {name: Watched(name) for name in PROCESSES})
     reference: MotionReference | None = None
     estimate: StateEstimate | None = None
+    hardware: HardwareState | None = None
     margin_m: float | None = None
     events: list[FsmEvent] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
     displacement_m: float = 0.0
+    command: str = ""
     direction: str = ""
     notes: list[str] = field(default_factory=list)
+    ending: str = ""
+    simulated: bool = False
     _clock: deque[tuple[float, float]] = field(default_factory=deque)
     _first: tuple[float, float] | None = None
 
@@ -88,17 +111,34 @@ class Picture:
 
     def note_command(self, command: str) -> None:
         """Take in what the robot was told."""
+        self.command = command
         if command in DIRECTIONS:
             self.direction = command
 
     def note_status(self, status: ProcessStatus) -> None:
         """Take in what a process says of itself."""
         watched = self.processes.get(status.process)
-        if watched is not None:
-            watched.status, watched.heard = status, time.monotonic()
+        if watched is None or status.boot < watched.restarts:
+            return  # the last words of one that has been replaced
+        low = status.rate_hz < (1.0 - RATE_BAND) * status.nominal_hz
+        watched.slow = watched.slow + 1 if low else 0
+        watched.status, watched.heard = status, time.monotonic()
+
+    def note_notice(self, notice: Notice) -> None:
+        """Take in what the run's supervisor says of it."""
+        for name, post in notice.processes.items():
+            watched = self.processes.get(name)
+            if watched is not None:
+                if watched.status is not None and watched.status.boot < post.restarts:
+                    watched.status = None
+                watched.restarts, watched.lent_to = post.restarts, post.lent_to
+                watched.out, watched.told_silent_s = post.out, post.silent_s
+        self.notes, self.ending = list(notice.notes), notice.ending
 
     def note_time(self) -> None:
         """Mark how far the run's clock has come by now."""
+        if self.reference is None:
+            return
         now = time.monotonic(), self.t
         if self._first is None and self.t > 0.0:
             self._first = now

@@ -29,6 +29,7 @@ class Io(Component):
     name: ClassVar[str] = "io"
     inputs: ClassVar[tuple[str, ...]] = ("joint/command",)
     outputs: ClassVar[tuple[str, ...]] = ("hw/state", "hw/depth", "sim/truth")
+    remembers: ClassVar[bool] = False
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)

@@ -2,6 +2,7 @@
 
 from surefoot.bus.codec import decode
 from surefoot.bus.messages import ProcessStatus
+from surefoot.bus.recording.journal import Journal
 from surefoot.bus.topics import PROCESSES
 from surefoot.components.component import Component, Inbox
 from surefoot.components.health import Health
@@ -20,7 +21,7 @@ class Worker(Component):
 
 def test_the_trouble_of_the_last_step_is_told_until_a_step_goes_well():
     worker, bus, buffers = Worker(Deployment()), Bus(), TopicBuffers(())
-    health = Health(worker, bus, buffers, PROCESSES["mpc"])
+    health = Health(worker, bus, buffers, PROCESSES["mpc"], Journal("mpc"))
 
     def told():
         health.tell(0.0, Inbox(()), now=True)

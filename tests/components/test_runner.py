@@ -48,6 +48,9 @@ class Bus:
         for word in self.asks if key.startswith("relief/ask/") else ():
             receive(key, word)
 
+    def serve_each(self, key, answer):
+        pass
+
     def close(self):
         self.open = False
 

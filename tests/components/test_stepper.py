@@ -1,6 +1,7 @@
 """A process that takes the place of another: with simulated time, and on the monotonic clock."""
 
 import numpy as np
+import pytest
 
 from surefoot.bus.codec import decode, encode
 from surefoot.bus.messages import FsmEvent, OperatorCommand, StateEstimate
@@ -23,6 +24,9 @@ class Session:
     def put(self, key, payload, lossless=True):
         pass
 
+    def serve_each(self, key, answer):
+        pass
+
 
 def process(kind=Wbc):
     return Stepper(kind(Deployment()), Session(), PROCESSES[kind.name])
@@ -36,6 +40,20 @@ def test_a_process_that_has_not_begun_has_nothing_to_hand_over():
     second.resume(clock.Resume({}, first.snapshot()), {})
     second.step(0.002)
     assert second.health.life.name == "ACTIVATING"
+
+
+def test_without_what_its_predecessor_had_read_it_does_not_go_on():
+    waiting, looks = process(), []
+
+    def look():
+        looks.append(waiting.health.lost)
+        if len(looks) == 2:
+            raise SystemExit(0)  # as when it is told to end
+
+    waiting.look = look
+    with pytest.raises(SystemExit):
+        waiting.resume(clock.Resume({"fsm/reference": 7}, b""), {"fsm/reference": 8})
+    assert looks[0] == looks[1] == "fsm/reference: a message is missing, and io does not answer: is the link down?"
 
 
 def test_a_memory_of_other_code_is_not_taken_over_and_that_is_told():

@@ -217,7 +217,7 @@ def test_a_whole_stream_is_handed_over_in_order():
 
 def test_a_process_asks_for_what_its_component_wants_whole():
     session = Session()
-    session.serve = lambda key, answer: None
+    session.serve = session.serve_each = lambda key, answer: None
     seeing = ElevationMap(Deployment(run=Run(vision=True)))
     Stepper(seeing, session, PROCESSES["elevation_map"], simulated=False).connect()
     assert session.asked["state/estimate"] == "all"

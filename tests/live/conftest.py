@@ -1,11 +1,14 @@
 """Stacks of processes over Zenoh, started by hand or by `surefoot run`, and all that they publish."""
 
+import json
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
+from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
@@ -149,17 +152,54 @@ class Stack(Ear):
         self.log.close()
 
 
+def gone(pid):
+    """Whether a process has ended, waited for or not."""
+    try:
+        stat = Path(f"/proc/{pid}/stat").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+    return stat.rsplit(")", 1)[1].split()[0] == "Z"
+
+
 class Supervised(Ear):
     """A run of `surefoot run flat --plain`."""
 
-    def __init__(self, tmp_path, *settings):
+    def __init__(self, tmp_path, *settings, flags=(), env=None, until_up=True):
         self.namespace = f"test-{os.getpid()}-{tmp_path.name}"
         self.output = tmp_path / "output"
         words = [f"run.namespace={self.namespace}", f"run.log_dir={tmp_path / 'logs'}", *settings]
-        command = [*CLI, "run", "flat", "--plain", *(word for setting in words for word in ("--set", setting))]
+        command = [*CLI, "run", "flat", "--plain", *flags]
+        command += [word for setting in words for word in ("--set", setting)]
+        self.session, self.lent = None, []
         with self.output.open("wb") as output:
-            self.run = subprocess.Popen(command, stdout=output, stderr=output)
-        super().__init__(self.namespace)
+            self.run = subprocess.Popen(command, stdout=output, stderr=output, env=env)
+        if until_up:
+            super().__init__(self.namespace)
+
+    def borrow(self, name, *program):
+        """Run one of its processes by hand, by a program of one's own if there is one."""
+        command = [*(CLI[:2] if program else CLI), *program, "child", "flat", name, "--namespace", self.namespace]
+        pipe = subprocess.PIPE
+        self.lent.append(subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.STDOUT, text=True))
+        return self.lent[-1]
+
+    def asked(self):
+        """What `surefoot status --json` says, and its exit code."""
+        command = [*CLI, "status", "--json", "--namespace", self.namespace]
+        answer = subprocess.run(command, capture_output=True, text=True)
+        return json.loads(answer.stdout), answer.returncode
+
+    def children(self):
+        """Process ids of those that the supervisor has started and that live."""
+        stats = {}
+        for entry in Path("/proc").glob("[0-9]*/stat"):
+            with suppress(FileNotFoundError, ProcessLookupError):
+                stats[int(entry.parent.name)] = int(entry.read_text().rsplit(")", 1)[1].split()[1])
+        return [pid for pid, parent in stats.items() if parent == self.run.pid and not gone(pid)]
+
+    def wait_gone(self, pids):
+        """Until none of the processes is left."""
+        wait(lambda: all(gone(pid) for pid in pids), lambda: f"left: {[pid for pid in pids if not gone(pid)]}")
 
     def command(self, *words):
         """Another `surefoot` command for this run."""
@@ -191,7 +231,11 @@ class Supervised(Ear):
         except subprocess.TimeoutExpired:
             self.run.kill()
             self.run.wait()
-        self.session.close()
+        for child in self.lent:
+            child.kill()
+            child.communicate()
+        if self.session is not None:
+            self.session.close()
 
 
 class Link:
@@ -345,7 +389,7 @@ def stack(tmp_path):
 @pytest.fixture
 def supervised(tmp_path):
     """Makes a `Supervised` run."""
-    yield from _closing(lambda *args: Supervised(tmp_path, *args))
+    yield from _closing(lambda *args, **kwargs: Supervised(tmp_path, *args, **kwargs))
 
 
 def _closing(make):

@@ -9,15 +9,6 @@ from surefoot.bus.codec import decode
 from surefoot.bus.topics import TOPICS
 
 
-def gone(pid):
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return True
-    with open(f"/proc/{pid}/stat") as stat:
-        return stat.read().rsplit(")", 1)[1].split()[0] == "Z"
-
-
 def test_every_process_but_io_is_restarted_while_the_robot_stands(supervised):
     live = supervised("run.command=stand")
     live.wait(lambda: live.t() > 1.0)
@@ -53,13 +44,15 @@ def test_a_process_that_crashes_is_restarted_three_times_and_then_ends_the_run(s
     assert "restarted, 3 of 3" in live.log("supervisor")
 
 
-@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL], ids=lambda how: how.name)
+@pytest.mark.parametrize(
+    "how", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL], ids=lambda how: how.name
+)
 def test_no_process_is_left_behind(supervised, how):
     live = supervised("run.command=stand")
     pids = live.pids()
     live.run.send_signal(how)
     live.wait_end()
-    live.wait(lambda: all(gone(pid) for pid in pids))
+    live.wait_gone(pids)
     if how != signal.SIGKILL:
         assert live.run.returncode == 0 and "ended by the user" in live.said()
 

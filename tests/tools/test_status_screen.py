@@ -12,7 +12,6 @@ from surefoot.components.robot_model import LegKinematics
 from surefoot.config.robot import load_robot
 from surefoot.tools.picture import Picture, SupportMargin
 from surefoot.tools.status_screen import screen
-from surefoot.tools.verdict import Verdict
 
 
 def standing():
@@ -50,7 +49,7 @@ def full_picture():
 
 def shown(picture, width=100):
     out = io.StringIO()
-    Console(file=out, width=width, height=40).print(screen(picture, Verdict("it stopped", advice="go on"), 5, "T"))
+    Console(file=out, width=width, height=40).print(screen(picture, 5, "T", "it stopped. go on"))
     return out.getvalue()
 
 
@@ -69,9 +68,56 @@ def test_everything_is_on_one_screen(width):
 
 def test_the_first_picture_says_what_is_awaited():
     picture = Picture()
-    assert "the processes come up" in shown(picture)
-    picture.processes["io"].status = ProcessStatus(process="io", reason="waiting for mpc to come up")
-    assert "waiting for mpc to come up" in shown(picture)
+    assert "the processes come up" in shown(picture) and "Why nothing moves: no process" in shown(picture)
+    picture.note_status(ProcessStatus(process="io", life="IDLE", reason="waiting for mpc to come up"))
+    text = shown(picture)
+    assert "mpc: has not spoken yet" in text and "and 4 more" in text
+    assert "Why nothing moves: simulated time waits for mpc, which has not spoken" in text
+    reason = "simulated time waits for mpc, 1.5 s now"
+    picture.note_status(ProcessStatus(process="io", t=30.8, steps=15400, reason=reason))
+    assert "time stands at 30.80 s" in shown(picture)
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_a_row_holds_all_that_is_known_of_a_process(width):
+    picture = full_picture()
+    picture.note_status(
+        ProcessStatus(
+            process="wbc", life="RUN", rate_hz=249.6, nominal_hz=250.0, step_p50_ms=0.834, step_p99_ms=12.34,
+            step_max_ms=1234.5, overruns=1234, bad_messages=56, boot=12, reason="late for tea",
+            input=("state/estimate", "fsm/reference"), input_age_s=np.array([0.0312, 0.004]),
+        )
+    )  # fmt: skip
+    for name in ("mpc", "fsm"):
+        picture.note_status(ProcessStatus(process=name, life="RUN"))
+    picture.processes["mpc"].lent_to = 4194303
+    picture.processes["trajopt"].out = "ended with exit code 1 (NameError: x), see log/trajopt.log"
+    text = shown(picture, width)
+    rows = {line.split()[0]: line.split()[1:] for line in text.splitlines() if line.split()}
+    figures = ["250/250", "0.83", "12.3", "1234", "1234", "56", "state/estimate", "31/40", "12"]
+    assert rows["wbc"] == ["RUN", *figures]
+    assert rows["mpc"][0] == "lent" and rows["trajopt"][0] == "out"
+    assert "trajopt: ended with exit code 1 (NameError: x)" in text
+    assert "Why nothing moves: trajopt ended with exit code 1" in text
+    assert len(text.splitlines()) <= 30 and all(len(line) <= width for line in text.splitlines())
+
+
+def test_one_that_is_lent_is_told_with_the_process_that_has_it():
+    picture = full_picture()
+    for name, watched in picture.processes.items():
+        picture.note_status(ProcessStatus(process=name, life="RUN"))
+        assert watched.status.reason == ""
+    picture.processes["mpc"].lent_to = 4194303
+    assert "mpc: lent to process 4194303" in shown(picture)
+
+
+def test_one_that_is_late_stands_out():
+    picture = full_picture()
+    picture.note_status(
+        ProcessStatus(process="wbc", life="RUN", input=("mpc/policy",), input_age_s=np.array([0.25]))
+    )
+    text = shown(picture)
+    assert "mpc/policy 250/100" in text and "mpc is late" in text
 
 
 def test_the_margin_is_that_of_the_other_three_feet():

@@ -1,16 +1,21 @@
-"""Which process may be restarted when, and that a stop is carried through."""
+"""Which process may be restarted or lent when, and that a stop is carried through."""
 
 import os
 import signal
+import subprocess
+import sys
 
 import pytest
 
-from surefoot.bus.messages import MotionReference
+from surefoot.bus.messages import MotionReference, ProcessStatus
 from surefoot.bus.topics import PROCESSES
+from surefoot.components import clock_messages as clock
 from surefoot.config.deployment import Deployment, Run
 from surefoot.config.network import Network
 from surefoot.tools import supervisor as supervisor_module
+from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.supervisor import Supervisor
+from surefoot.tools.supervisor_messages import Answer
 
 
 class Child:
@@ -23,6 +28,9 @@ class Child:
 
     def terminate(self):
         self.code = 0
+
+    def send_signal(self, number):
+        pass
 
     def wait(self, timeout=None):
         pass
@@ -79,7 +87,10 @@ def test_in_real_time_a_successor_is_ready_before_its_predecessor_leaves(restart
     before = watched.popen
     assert supervisor.launched == [(name, 1, "--relieve")]
     supervisor.restart(name)
-    assert supervisor.notes == [f"{name} is being restarted already"] and len(supervisor.launched) == 1
+    assert (
+        supervisor.notes == [f"cannot restart {name}: it is being restarted already"]
+        and len(supervisor.launched) == 1
+    )
     assert supervisor._reconcile() == "" and watched.popen is before and before.code is None
     before.code = 0  # it has left its place
     assert supervisor._reconcile() == "" and watched.popen is not before and watched.restarts == 1
@@ -131,6 +142,7 @@ def test_a_stop_is_carried_through_whoever_presses_ctrl_c_again(tmp_path, monkey
     def end(popen):
         os.kill(os.getpid(), signal.SIGINT)
         os.kill(os.getpid(), signal.SIGTERM)
+        os.kill(os.getpid(), signal.SIGHUP)
         ended.append(names[popen])
 
     monkeypatch.setattr("surefoot.tools.supervisor._end", end)
@@ -138,6 +150,171 @@ def test_a_stop_is_carried_through_whoever_presses_ctrl_c_again(tmp_path, monkey
     supervisor.stop()
     assert sorted(ended) == sorted(PROCESSES) and ended[-1] == "io"
     assert signal.getsignal(signal.SIGINT) == before
+
+
+@pytest.fixture
+def sleeper():
+    """Starts real processes that sleep after some code."""
+    made = []
+
+    def start(code="pass"):
+        code = f"import os, signal, time; {code}; print(flush=True); time.sleep(600)"
+        made.append(subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE))
+        made[-1].stdout.readline()
+        return made[-1]
+
+    yield start
+    for each in made:
+        each.kill()
+        each.wait()
+
+
+def test_one_that_is_stopped_still_ends_in_order(tmp_path, sleeper):
+    supervisor = Supervisor(tmp_path / "flat.toml", [], Deployment())
+    mpc = supervisor.picture.processes["mpc"]
+    mpc.popen = sleeper("signal.signal(signal.SIGTERM, lambda *_: os._exit(7))")
+    mpc.popen.send_signal(signal.SIGSTOP)
+    supervisor.stop()
+    assert mpc.popen.returncode == 7
+
+
+def test_one_that_hangs_is_killed_in_its_time(tmp_path, sleeper, monkeypatch):
+    monkeypatch.setattr(supervisor_module, "KILL_AFTER_S", 0.2)
+    supervisor = Supervisor(tmp_path / "flat.toml", [], Deployment())
+    for name in ("mpc", "io"):
+        supervisor.picture.processes[name].popen = sleeper("signal.signal(signal.SIGTERM, signal.SIG_IGN)")
+    supervisor.stop()
+    assert all(supervisor.picture.processes[name].popen.returncode == -signal.SIGKILL for name in ("mpc", "io"))
+
+
+class Desk:
+    """A supervisor that starts nothing; what it would have started, commanded and answered."""
+
+    def __init__(self, tmp_path, clock="simulated", sources=None):
+        deployment = Deployment(run=Run(clock=clock, log_dir=str(tmp_path)))
+        self.supervisor = Supervisor(tmp_path / "flat.toml", [], deployment, sources)
+        self.done, self.answers = [], []
+        self.supervisor._command = self.done.append
+        self.supervisor._answer = lambda pid, answer: self.answers.append((pid, answer))
+        start = self.supervisor._start
+
+        def only_grant(name):
+            if self.supervisor.picture.processes[name].lent_to:
+                start(name)
+            else:
+                self.done.append(name)
+
+        self.supervisor._start = only_grant
+        self.picture = self.supervisor.picture
+
+    def ask(self, *requests):
+        for request in requests:
+            self.supervisor._requests.put(request)
+        return self.supervisor._reconcile()
+
+    @property
+    def said(self):
+        return self.picture.notes[-1]
+
+
+def test_a_process_is_lent_taken_back_and_neither_restarted_nor_lent_twice_meanwhile(tmp_path, sleeper):
+    desk, borrower = Desk(tmp_path), sleeper()
+    wbc = desk.picture.processes["wbc"]
+    wbc.popen = own = sleeper()
+    desk.ask(f"lend wbc {borrower.pid}")
+    assert own.poll() is not None  # ended before the other begins
+    assert desk.answers == [(borrower.pid, Answer(1))] and desk.done == []
+    assert wbc.lent_to == borrower.pid and wbc.exit_code is None
+    assert f"wbc lent to process {borrower.pid}" in desk.said
+    desk.ask("restart wbc")
+    assert desk.said == f"cannot restart wbc: it is lent to process {borrower.pid}; end that one"
+    other = sleeper()
+    desk.ask(f"lend wbc {other.pid}")
+    assert desk.answers[-1][0] == other.pid and desk.answers[-1][1].boot == -1
+    assert "does not lend wbc: it is lent to process" in desk.answers[-1][1].words
+    assert desk.done == [] and wbc.restarts == 1
+    borrower.kill()
+    borrower.wait()
+    desk.ask()
+    assert desk.done == ["wbc"] and wbc.lent_to == 0 and wbc.restarts == 2
+    assert desk.said == f"process {borrower.pid} has ended: wbc is started again here"
+
+
+def test_io_and_in_real_time_what_holds_the_robot_are_not_lent(tmp_path, sleeper):
+    desk, borrower = Desk(tmp_path, "monotonic"), sleeper()
+    refused = (("io", "holds the robot and the bus"), ("wbc", "in real time nothing waits"), ("x", "there are"))
+    for name, words in refused:
+        desk.ask(f"lend {name} {borrower.pid}")
+        assert desk.answers[-1][1].boot == -1 and words in desk.answers[-1][1].words
+    desk.picture.reference = MotionReference(state="DAMP")
+    desk.ask(f"lend wbc {borrower.pid}")
+    assert desk.answers[-1] == (borrower.pid, Answer(1))
+    # One who ends it while the robot moves ends the run, as a crash would.
+    desk.picture.reference = MotionReference(state="PROBE")
+    borrower.kill()
+    borrower.wait()
+    said = desk.ask()
+    assert said.startswith(
+        f"process {borrower.pid}, which had wbc, has ended in state PROBE: in real time nothing"
+    )
+    assert desk.done == []
+
+
+def test_a_lent_process_is_told_to_end_with_the_run_and_not_killed(tmp_path, sleeper, monkeypatch):
+    monkeypatch.setattr(supervisor_module, "KILL_AFTER_S", 0.2)
+    desk = Desk(tmp_path)
+    good, at_a_prompt = sleeper(), sleeper("signal.signal(signal.SIGTERM, signal.SIG_IGN)")
+    desk.ask(f"lend wbc {good.pid}", f"lend mpc {at_a_prompt.pid}")
+    desk.supervisor.stop()
+    assert good.wait() == -signal.SIGTERM and at_a_prompt.poll() is None
+
+
+@pytest.mark.parametrize("request_", ["", "lend wbc", "lend wbc me", "restart", "restart a b", "dance"])
+def test_what_is_no_request_is_said_and_changes_nothing(tmp_path, request_):
+    desk = Desk(tmp_path)
+    assert desk.ask(request_) == "" and "not understood" in desk.said
+    assert desk.done == [] and desk.answers == []
+
+
+def test_to_lend_to_a_process_that_is_not_there_changes_nothing(tmp_path, sleeper):
+    desk, gone = Desk(tmp_path), sleeper()
+    gone.kill()
+    gone.wait()
+    desk.ask(f"lend wbc {gone.pid}")
+    assert "there is none" in desk.said and desk.done == []
+
+
+def test_a_storm_of_requests_ends_and_what_crashes_meanwhile_is_started_too(tmp_path, sleeper):
+    desk = Desk(tmp_path)
+    estimator = desk.picture.processes["estimator"]
+    estimator.popen = sleeper()
+    estimator.popen.kill()
+    estimator.popen.wait()
+    assert desk.ask(*["restart wbc", "restart mpc", "restart wbc"] * 20) == ""
+    assert desk.done == ["estimator", "wbc"]
+    estimator.popen = None
+    desk.picture.note_status(ProcessStatus(process="wbc", boot=1, nominal_hz=250.0, steps=1))
+    assert desk.ask("stop", "restart fsm") == "stopped by command"
+    desk.ask()
+    assert desk.done == ["estimator", "wbc", "mpc"]
+    assert len(desk.picture.notes) == 3  # the crash and two restarts
+
+
+def test_with_reload_one_that_fails_waits_for_its_source_and_one_that_is_killed_does_not(tmp_path, sleeper):
+    (tmp_path / "components").mkdir()
+    desk = Desk(tmp_path, sources=SourceWatch(tmp_path))
+    mpc = desk.picture.processes["mpc"]
+    mpc.popen = subprocess.Popen([sys.executable, "-c", "raise SystemExit(1)"])
+    mpc.popen.wait()
+    assert desk.ask() == "" and desk.done == []
+    assert "ended with exit code 1" in mpc.out and "waits for its source to change" in desk.said
+    desk.ask("restart mpc")
+    assert desk.done == ["mpc"]
+    mpc.out, mpc.popen = "", sleeper()
+    mpc.popen.kill()
+    mpc.popen.wait()
+    desk.ask()
+    assert desk.done == ["mpc", "mpc"] and "restarted, 1 of 3" in desk.said
 
 
 HOSTS = {"robot": ("io", "estimator", "wbc", "fsm"), "laptop": ("mpc", "trajopt", "elevation_map")}
@@ -155,8 +332,12 @@ class Bus:
     def subscribe(self, key, receive):
         pass
 
-    def put(self, key, payload):
-        self.said.append((key, payload))
+    def put(self, key, payload, lossless=True):
+        if key == clock.REQUEST:
+            self.said.append((key, payload))
+
+    def serve(self, key, answer):
+        pass
 
     def close(self):
         pass
@@ -174,7 +355,8 @@ def test_each_machine_starts_its_own_processes_and_that_of_io_gives_the_command(
     monkeypatch.setattr(supervisor_module, "check_keys", lambda network: None)
     monkeypatch.setattr(supervisor, "_start", started.append)
     monkeypatch.setattr(supervisor, "_connect", lambda: bus)
-    monkeypatch.setattr(supervisor, "_await", lambda name, *rest: None)
+    monkeypatch.setattr(supervisor, "_await_io", lambda each: None)
+    supervisor.picture.processes["fsm"].status = ProcessStatus(process="fsm")
     assert supervisor.run(lambda picture: "enough") == "enough"
     assert started == list(HOSTS[host])
     assert [payload for _, payload in bus.said] == ([b"stand"] if host == "robot" else [])

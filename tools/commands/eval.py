@@ -34,6 +34,9 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--fresh", action="store_true", help="do seeds again that the folder's results.json has already"
     )
+    parser.add_argument(
+        "--record", action="store_true", help="keep a recording of every run in the folder: about 4 MB a second"
+    )
     parser.set_defaults(run=_run)
 
 
@@ -52,6 +55,7 @@ def _run(call: argparse.Namespace) -> int:
         vision=None if call.vision is None else call.vision == "on",
         fresh=call.fresh,
         cluster=call.dask,
+        record=call.record,
     )
     print(summary(results))
     print(f"written to {call.out}")

@@ -27,7 +27,7 @@ def add(commands: argparse._SubParsersAction) -> None:
 
 def _run(call: argparse.Namespace) -> int:
     from surefoot.bus.topics import PROCESSES
-    from surefoot.tools.supervisor import REQUEST
+    from surefoot.tools.supervisor_messages import REQUEST
 
     if call.name not in PROCESSES or call.name == "io":
         names = ", ".join(name for name in PROCESSES if name != "io")

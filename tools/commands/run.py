@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from surefoot.tools.commands.call import deployment_file
 
@@ -21,6 +22,12 @@ time; a machine that cannot solve the MPC fast enough says so and runs its light
 restarted is relieved by another that is ready: estimator, wbc and fsm while the robot rests, the others at any
 time.
 
+--reload, with the simulated clock, watches the project's source files: a change restarts just the processes that
+import the changed file, once it compiles; one that fails with the new source waits for the next change.
+`surefoot child CONFIG NAME` in another terminal takes the place of one process, under a debugger if you like.
+
+--record OUT.mcap writes all that is published and what every step has read: see `surefoot info` and `replay`.
+
 With --host NAME it starts what network.hosts gives that machine, and connects to the robot's. Start the robot's
 machine and this one in any order within a minute; each part ends by itself or with Ctrl-C.
 
@@ -35,7 +42,7 @@ def add(commands: argparse._SubParsersAction) -> None:
         help="start every process of a deployment",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description=_RUN,
-        epilog="example: surefoot run planks",
+        epilog="examples: surefoot run planks\n          surefoot run flat --set run.command=stand --reload",
     )
     parser.add_argument("config", nargs="?", default="planks", help="a deployment file, or its name in config/")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
@@ -44,6 +51,10 @@ def add(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--host", metavar="NAME", help="this machine's name in network.hosts; default: that of io")
     parser.add_argument("--plain", action="store_true", help="lines instead of a screen")
+    parser.add_argument(
+        "--reload", action="store_true", help="restart the processes whose source changes (simulated clock)"
+    )
+    parser.add_argument("--record", type=Path, metavar="OUT.mcap", help="record everything that is published")
     parser.set_defaults(run=_run)
 
 
@@ -51,4 +62,4 @@ def _run(call: argparse.Namespace) -> int:
     from surefoot.tools.live_run import live_run
 
     overrides = [*call.set, f"network.host={call.host}"] if call.host else call.set
-    return live_run(deployment_file(call.config), overrides, call.seconds, call.plain)
+    return live_run(deployment_file(call.config), overrides, call.seconds, call.plain, call.reload, call.record)

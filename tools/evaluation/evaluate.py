@@ -16,11 +16,21 @@ from surefoot.tools.evaluation.workers import Work, run_apart
 
 
 def grade_seed(
-    scenario: Path, changes: Sequence[str], seed: int, limit_s: float, true_state: bool = False
+    scenario: Path,
+    changes: Sequence[str],
+    seed: int,
+    limit_s: float,
+    true_state: bool = False,
+    record: Path | None = None,
 ) -> dict:
-    """Grade one seed of a deployment file, saying how it goes."""
+    """Grade one seed of a deployment file, saying how it goes; `record` is the folder for its recording."""
     deployment = load_deployment(scenario, [*changes, f"hw.seed={seed}"])
-    return grade(deployment, limit_s, lambda line: print(f"seed {seed}: {line}", flush=True), true_state)
+    file = record / f"seed_{seed}.mcap" if record is not None else None
+
+    def say(line: str) -> None:
+        print(f"seed {seed}: {line}", flush=True)
+
+    return grade(deployment, limit_s, say, true_state, record=file)
 
 
 def evaluate(
@@ -36,6 +46,7 @@ def evaluate(
     vision: bool | None = None,
     fresh: bool = False,
     cluster: str = "",
+    record: bool = False,
 ) -> dict:
     """Grade a deployment file over seeds; writes `results.json` after every run, so nothing is lost.
 
@@ -52,6 +63,7 @@ def evaluate(
         vision: with or without the depth camera; None as the deployment says.
         fresh: forget the runs that are there.
         cluster: address of a Dask scheduler whose workers do the runs instead of this machine; "" none.
+        record: keep a recording of every run, `seed_N.mcap`, in the folder.
 
     Raises:
         ConfigError: the deployment, an override or the arm is wrong, there is less than one job, the folder
@@ -59,6 +71,8 @@ def evaluate(
     """
     if jobs < 1:
         raise ConfigError(f"--jobs {jobs}: at least one")
+    if record and cluster:
+        raise ConfigError("--record with --dask: the recordings would lie on the workers' disks; use --jobs")
     changes = [*arm_overrides(arm), *overrides]
     if vision is not None:
         changes.append(f"run.vision={str(vision).lower()}")
@@ -70,6 +84,9 @@ def evaluate(
         say(f"{len(set(seeds)) - len(missing)} of {len(set(seeds))} seeds are there already")
     if arm == TRUE_STATE:
         work = partial(work, true_state=True)
+    if record:
+        out.mkdir(parents=True, exist_ok=True)
+        work = partial(work, record=out.resolve())
     calls = [(scenario, changes, seed, limit_s) for seed in missing]
     runs = run_on_cluster(work, calls, cluster) if cluster and calls else run_apart(work, calls, jobs)
     for (_, _, seed, _), graded in runs:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -22,9 +21,10 @@ from surefoot.bus.topics import TOPICS
 from surefoot.components.fsm.support_triangle import SupportTriangle
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
-from surefoot.hw.mujoco.press_test import COLLAPSE_M, PressTest
+from surefoot.hw.mujoco.press_test import COLLAPSE_M
 from surefoot.hw.mujoco.terrain import Field
 from surefoot.tools.evaluation.drops import Drops
+from surefoot.tools.evaluation.labels import Labels
 from surefoot.tools.evaluation.outcome import BELOW_M, CARRIES_N, Outcome
 
 ENVELOPE_FORCES = 6
@@ -58,9 +58,9 @@ class Grader:
     def __init__(self, deployment: Deployment, field: Field):
         """For a deployment whose terrain lies in `field`."""
         robot = deployment.load_robot()
-        self._press = lru_cache(maxsize=None)(PressTest(deployment).press)
+        self._labels = Labels(deployment)
         self._drops = Drops(field, robot.foot.radius)
-        self.outcome = Outcome(deployment.terrain.row, field, robot.foot.radius, self._verdict)
+        self.outcome = Outcome(deployment.terrain.row, field, robot.foot.radius, self._labels.fails)
         self._truth: SimTruth | None = None
         self._estimate: StateEstimate | None = None
         self._reference: MotionReference | None = None
@@ -92,6 +92,8 @@ class Grader:
                 "false_negatives",
                 "in_hole",
                 "rejected_by_map",
+                "doubtful_alarms",
+                "doubtful_misses",
             ),
             0,
         )
@@ -266,8 +268,9 @@ class Grader:
         """A collapse is true where the press test says that the probed point fails the envelope's peak."""
         probe, self._probe = self._probe, None
         if probe is not None:
-            truly = self._verdict(probe.point, probe.force_n)
+            truly = self._labels.fails(probe.point, probe.force_n)
             self.counts["true_positives" if truly else "false_alarms"] += 1
+            self.counts["doubtful_alarms"] += not truly and self._labels.in_doubt(probe.point, probe.force_n)
 
     def _end_probe(self) -> None:
         """A probe that ended without a collapse is false where the press test says that the point fails it.
@@ -276,7 +279,9 @@ class Grader:
         """
         probe, self._probe = self._probe, None
         if probe is not None and probe.borne:
-            self.counts["false_negatives"] += self._verdict(probe.point, probe.force_n)
+            missed = self._labels.fails(probe.point, probe.force_n)
+            self.counts["false_negatives"] += missed
+            self.counts["doubtful_misses"] += missed and self._labels.in_doubt(probe.point, probe.force_n)
 
     def _label_late_collapse(self, leg: int, truth: SimTruth) -> None:
         """A collapse of a trusted foot is false where it has not sunk and the press test says the ground holds.
@@ -286,14 +291,9 @@ class Grader:
         for: the peak of its probe's envelope.
         """
         pressed_n = max(self._certified_n[leg], self._carried_n[leg])
-        if leg not in self._sunk and not self._verdict(truth.p_WF[leg, :2], pressed_n):
+        if leg not in self._sunk and not self._labels.fails(truth.p_WF[leg, :2], pressed_n):
             self.counts["false_alarms"] += 1
             self.counts["late_false_alarms"] += 1
-
-    def _verdict(self, point: np.ndarray, force_n: float) -> bool:
-        """The press test's at a point (2,), to the millimetre and the newton."""
-        x, y = point.tolist()
-        return self._press(round(x, 3), round(y, 3), round(force_n)).collapsible
 
     # Results --------------------------------------------------------------------------------------------
 
@@ -301,7 +301,9 @@ class Grader:
         """The measures of one run, as they stand in `results.json`.
 
         `precision` is the share of all collapses called, in probes and later, that the press test bears out;
-        `recall` the share of the probed points that fail the press test whose collapse was called.
+        `recall` the share of the probed points that fail the press test whose collapse was called. Of the
+        alarms and misses that count against them, those in doubt lie where the press test's own verdict changes
+        within what place and force of a probe are good for (`Labels.in_doubt`).
         """
         counts, truth, start, outcome = self.counts, self._truth, self._start, self.outcome
         footholds = counts["footholds"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import traceback
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from time import perf_counter
 from typing import cast
 
@@ -16,6 +17,7 @@ from surefoot.config.deployment import Deployment
 from surefoot.tools.evaluation.grader import Grader
 from surefoot.tools.evaluation.stopwatch import Stopwatch
 from surefoot.tools.evaluation.true_state import TrueState
+from surefoot.tools.recording.lockstep_recording import LockstepRecording
 
 LIMIT_S = 1200.0
 """Simulated time after which a run is a failure."""
@@ -33,6 +35,7 @@ def grade(
     progress: Progress | None = None,
     true_state: bool = False,
     listeners: Sequence[Listener] = (),
+    record: Path | None = None,
 ) -> dict:
     """Run a deployment until it is decided; a crash is reported as the run's failure.
 
@@ -42,13 +45,14 @@ def grade(
         progress: is told how it goes.
         true_state: the estimator is ideal.
         listeners: hear every message of the run.
+        record: file for a recording of it.
 
     Returns:
         One entry of `runs` in `results.json`.
     """
     seed = deployment.hw.seed
     try:
-        return {"seed": seed} | _grade(deployment, limit_s, progress, true_state, listeners)
+        return {"seed": seed} | _grade(deployment, limit_s, progress, true_state, listeners, record)
     except Exception as error:  # one run's crash must not take the others with it
         where = traceback.extract_tb(error.__traceback__)[-1]
         reason = f"error: {type(error).__name__}: {error} ({os.path.basename(where.filename)}:{where.lineno})"
@@ -61,8 +65,10 @@ def _grade(
     progress: Progress | None,
     true_state: bool,
     listeners: Sequence[Listener],
+    record: Path | None,
 ) -> dict:
     stack = Lockstep(deployment, given=[TrueState(deployment)] if true_state else [])
+    recording = LockstepRecording(stack, deployment, record) if record is not None else None
     io = cast(Io, stack.components["io"])  # what the registry has under this name
     grader = Grader(deployment, io.robot.field)
     physics = Stopwatch(io.robot)
@@ -81,6 +87,8 @@ def _grade(
         return grader.outcome.over
 
     stack.run(limit_s, decided)
+    if recording is not None:
+        recording.close()
     wall = perf_counter() - begun
     grader.outcome.finish(stack.t, limit_s)
     step_ms = {name: executor.step_ms for name, executor in stack.executors.items()}

@@ -72,6 +72,8 @@ def _totals(pooled: Pooled) -> list[str]:
         f"- missed collapses {pooled.total('missed_collapses')} of {pooled.total('footholds')} accepted footholds",
         f"- false alarms {pooled.total('false_alarms')} of {pooled.total('probes')} probes",
         f"- precision {_figure(pooled.precision, 3)}, recall {_figure(pooled.recall, 3)}, of all runs together",
+        f"- in doubt by the press test itself: {pooled.total('doubtful_alarms')} of the false alarms, "
+        f"{pooled.total('doubtful_misses')} of {pooled.total('false_negatives')} misses",
         f"- true against MPC's force, RMSE N: {_list(pooled.each('probe_rmse_n', 'true_vs_mpc'))}",
         f"- estimate against truth, RMSE N: {_list(pooled.each('probe_rmse_n', 'estimate_vs_true'))}",
         f"- drift of x, y per metre: {_list(pooled.each('estimator', 'xy_drift_per_m'), 3)}",

@@ -19,6 +19,7 @@ def run(seed=0, **figures):
         "footholds": 10, "probes": 50, "candidates_per_foothold": 1.5, "collapses_detected": 4,
         "missed_collapses": 0, "late_collapses": 0, "late_false_alarms": 0, "false_alarms": 0,
         "true_positives": 4, "false_negatives": 0, "in_hole": 0, "rejected_by_map": 0,
+        "doubtful_alarms": 0, "doubtful_misses": 0,
         "min_support_margin_m": 0.041, "max_tilt_rad": 0.1, "displacement_at_detection_m": [], "unload_s": [],
         "edge_distance_m": [], "probe_force": forces(),
         "probe_rmse_n": {"true_vs_mpc": 1.26, "estimate_vs_true": 2.14},

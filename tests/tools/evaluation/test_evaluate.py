@@ -16,6 +16,7 @@ from surefoot.tools.evaluation import one_run, results_file
 from surefoot.tools.evaluation.evaluate import evaluate
 from surefoot.tools.evaluation.summary import summary
 from surefoot.tools.evaluation.workers import run_apart
+from surefoot.tools.recording.replay import replay
 
 RUN_KEYS = {
     "seed", "success", "failure", "sim_time_s", "wall_time_s", "real_time_factor", "distance_m", "footholds",
@@ -50,6 +51,15 @@ def told(scenario, seeds, work, **options):
 
 def failures(results):
     return {run["seed"]: run["failure"] for run in results["runs"]}
+
+
+def test_a_run_is_recorded_and_can_be_replayed(scenario, tmp_path):
+    results = evaluate(scenario, [0], tmp_path / "out", limit_s=0.5, record=True, say=lambda line: None)
+    assert failures(results) == {0: "timeout"}
+    result = replay(tmp_path / "out" / "seed_0.mcap", ["estimator", "fsm"])
+    assert result.comparison.equal and result.steps["estimator"] == 251
+    with pytest.raises(ConfigError, match="--record with --dask"):
+        evaluate(scenario, [0], tmp_path / "out", record=True, cluster="tcp://nowhere:1")
 
 
 def test_a_killed_worker_costs_its_own_seed_alone(scenario):

@@ -609,7 +609,7 @@ class Trapped(Told):
     def __init__(self):
         super().__init__(ON_PLANKS)
         grader = self.grader
-        grader.outcome = Outcome(("planks", "trap"), FIELD, ROBOT.foot.radius, grader._verdict)
+        grader.outcome = Outcome(("planks", "trap"), FIELD, ROBOT.foot.radius, grader._labels.fails)
 
     def rest(self, seconds=3.1, **figures):
         """Stand still, told why."""

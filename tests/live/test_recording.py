@@ -1,0 +1,169 @@
+"""What runs on the bus is in the file: all of it, and all but the last second when the recorder is killed."""
+
+import resource
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from surefoot.bus.codec import decode
+from surefoot.bus.recording.reader import Recording
+from surefoot.bus.topics import PROCESSES, TOPICS
+from surefoot.tools.recording.clip import REMEMBER
+from surefoot.tools.recording.contents import Contents
+from surefoot.tools.recording.playback import playback
+from surefoot.tools.recording.replay import replay
+
+RECORD = [sys.executable, "-P", "-m", "surefoot.tools.cli", "record"]
+
+
+class Recorder:
+    """`surefoot record` on a stack."""
+
+    def __init__(self, live, folder, bytes_most=None):
+        self.path, self._live, output = folder / "out.mcap", live, folder / "recorder.log"
+
+        def limit():
+            if bytes_most is not None:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_most, bytes_most))
+
+        with output.open("wb") as log:
+            call = [*RECORD, str(self.path), "--namespace", live.namespace]
+            self.process = subprocess.Popen(call, stdout=log, stderr=log, preexec_fn=limit)
+        self.said = output.read_text
+        live.wait(lambda: "recording" in self.said())
+        live.wait(lambda: self.path.stat().st_size > 1_000)
+
+    def end(self):
+        """Ctrl-C; its exit code."""
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(60.0)
+
+
+@pytest.fixture
+def recorder(tmp_path):
+    """Makes a `Recorder`."""
+    made = []
+
+    def make(live, **limits):
+        made.append(Recorder(live, tmp_path, **limits))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.process.kill()
+        each.process.wait()
+
+
+def end_stack(live):
+    """End the processes in the supervisor's order."""
+    for name in reversed(PROCESSES):
+        live.children[name].terminate()
+        live.children[name].wait(20.0)
+
+
+def test_all_that_was_published_is_recorded_and_can_be_replayed(stack, recorder):
+    live = stack(leave_out=("trajopt",))
+    live.wait(lambda: "io" in live.status)
+    taken = recorder(live)
+    live.begin(b"forward")
+    live.wait(lambda: live.t() >= 1.9)
+    end_stack(live)
+    assert taken.process.wait(60.0) == 0, taken.said()
+    contents = Contents(taken.path)
+    assert contents.gaps == []
+    heard = {key: len(payloads) for key, payloads in live.heard.items() if payloads}
+    recorded = {key: topic.messages for key, topic in contents.topics.items() if not key.startswith("status/")}
+    assert recorded == heard
+    assert {f"status/{name}" for name in PROCESSES} <= contents.topics.keys()
+    result = replay(taken.path, REMEMBER)
+    told = {key: topic.first for key, topic in result.comparison.topics.items() if topic.first}
+    assert told == {} and not any(result.left_out.values()), result.notes
+    assert result.steps["wbc"] > 400
+
+
+def test_a_recorder_that_comes_late_and_stops_early_is_whole_in_between(stack, recorder):
+    live = stack(leave_out=("trajopt",))
+    live.begin(b"stand")
+    live.wait(lambda: live.t() > 0.5)
+    taken = recorder(live)
+    live.go_on(0.7)
+    taken.process.send_signal(signal.SIGSTOP)  # its queue overflows meanwhile
+    time.sleep(1.0)
+    taken.process.send_signal(signal.SIGCONT)
+    live.go_on(1.0)
+    assert taken.end() == 0, taken.said()
+    contents = Contents(taken.path)
+    assert [gap for gap in contents.gaps if "has no end" not in gap] == []
+    assert contents.topics["hw/state"].messages > 700
+    result = replay(taken.path, REMEMBER)
+    assert result.comparison.equal, {key: topic.first for key, topic in result.comparison.topics.items()}
+    live.go_on(0.1)
+    assert live.stands()
+
+
+def test_a_recorder_that_is_killed_leaves_all_but_the_last_second(stack, recorder):
+    live = stack(leave_out=("trajopt",))
+    live.begin(b"stand")
+    live.wait(lambda: live.t() > 0.2)
+    taken = recorder(live)
+    live.go_on(1.5)
+    taken.process.kill()
+    killed = live.t()
+    taken.process.wait()
+    contents = Contents(taken.path)
+    assert "incomplete" in contents.gaps[0]
+    begun = time.monotonic()
+    live.go_on(0.5)
+    pace = 0.5 / (time.monotonic() - begun)  # seconds of the run for each on the wall
+    assert contents.topics["hw/state"].last_t > killed - max(pace, 1.0)
+    assert not [gap for gap in contents.gaps if "messages are missing" in gap]
+    assert live.stands()
+
+
+def test_a_full_disk_ends_the_recording_and_not_the_run(stack, recorder):
+    live = stack(leave_out=("trajopt",))
+    live.begin(b"stand")
+    live.wait(lambda: live.t() > 0.2)
+    taken = recorder(live, bytes_most=1_000_000)
+    live.wait(lambda: taken.process.poll() is not None)
+    assert taken.process.returncode == 1
+    assert "recording ended" in taken.said() and "the run goes on without it" in taken.said()
+    assert sum(topic.messages for topic in Contents(taken.path).topics.values()) > 10
+    live.go_on(0.5)
+    assert live.stands()
+
+
+def test_a_process_that_is_killed_takes_only_its_last_moment_with_it(stack, recorder):
+    live = stack(leave_out=("trajopt",))
+    live.begin(b"stand")
+    live.wait(lambda: live.t() > 0.2)
+    taken = recorder(live)
+    live.go_on(0.5)
+    live.children["wbc"].kill()
+    live.children["wbc"].wait()
+    live.start("wbc", boot=1)
+    live.go_on(1.2)
+    assert taken.end() == 0, taken.said()
+    contents = Contents(taken.path)
+    assert contents.processes["wbc"].restarts == 1
+    result = replay(taken.path, ("wbc", "estimator"))
+    assert all(topic.differing == 0 for topic in result.comparison.topics.values())
+    assert result.steps["wbc"] > 200
+
+
+def test_a_recording_is_played_back_on_a_bus(stack, recorder, tmp_path):
+    live = stack(leave_out=("trajopt",))
+    live.begin(b"stand")
+    live.wait(lambda: live.t() > 0.2)
+    taken = recorder(live)
+    live.go_on(0.5)
+    assert taken.end() == 0
+    end_stack(live)
+    published = [item for item in Recording(taken.path) if item.key in TOPICS]
+    said = []
+    sent = playback(taken.path, f"{live.namespace}-again", 4.0, float("-inf"), float("inf"), said.append)
+    assert sent == len(published) and f"played {sent} messages" in said[-1]
+    assert decode(TOPICS["hw/state"].message, next(i.payload for i in published if i.key == "hw/state")).valid

@@ -1,0 +1,1 @@
+"""Recordings made, looked into, cut and replayed."""

@@ -1,0 +1,1 @@
+"""Restarting what is made of source files that have changed."""
