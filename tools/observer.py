@@ -6,22 +6,22 @@ from contextlib import suppress
 
 from surefoot.bus.codec import decode
 from surefoot.bus.errors import MessageError
-from surefoot.bus.messages import (
-    FsmEvent,
-    HardwareState,
-    MotionReference,
-    OperatorCommand,
-    ProcessStatus,
-    StateEstimate,
-)
+from surefoot.bus.messages import ProcessStatus
 from surefoot.bus.session import Session
+from surefoot.components.component import Inbox
+from surefoot.components.topic_buffer import TopicBuffers
 from surefoot.tools.picture import Picture, SupportMargin
+
+_STREAMS = {"hardware": "hw/state", "estimate": "state/estimate", "reference": "fsm/reference"}
+"""What the picture has of each: the newest."""
 
 
 class Observer:
     """Listens for a display or a supervisor.
 
-    Readers that act on a malformed message count and report it; here the last good one stays.
+    As the processes on the monotonic clock do, it keeps to the session that it heard first on each topic: what a
+    second publisher says ends no run. Readers that act on a malformed message count and report it; here the last
+    good one stays.
 
     Attributes:
         margin: how the picture's support margin is found; None leaves it open.
@@ -30,23 +30,23 @@ class Observer:
     def __init__(self, session: Session, picture: Picture, margin: SupportMargin | None = None):
         """Begin to listen."""
         self._picture, self.margin = picture, margin
-        self._streams = [
-            ("hardware", HardwareState, session.newest("hw/state")),
-            ("estimate", StateEstimate, session.newest("state/estimate")),
-            ("reference", MotionReference, session.newest("fsm/reference")),
-        ]
+        keys = (*_STREAMS.values(), "fsm/event", "operator/command")
+        self._buffers, self._inbox = TopicBuffers(keys, ""), Inbox(keys)
+        self._buffers.connect(session)
         session.subscribe("status/*", self._on_status)
-        session.subscribe("fsm/event", self._on_event)
-        session.subscribe("operator/command", self._on_command)
 
     def look(self) -> None:
-        """Take in the newest of the streams."""
-        picture = self._picture
-        for name, kind, take in self._streams:
-            payload = take()
-            if payload is not None:
-                with suppress(MessageError):
-                    setattr(picture, name, decode(kind, payload))
+        """Take in what has arrived."""
+        picture, inbox = self._picture, self._inbox
+        self._buffers.deliver_all(inbox)
+        for name, key in _STREAMS.items():
+            if inbox.new(key):
+                setattr(picture, name, inbox.latest(key))
+        for event in inbox.new("fsm/event"):
+            picture.note_event(event)
+        for command in inbox.new("operator/command"):
+            picture.note_command(command.command)
+        inbox.clear_new()
         picture.note_time()
         if self.margin is not None and picture.estimate is not None and picture.reference is not None:
             picture.margin_m = self.margin(picture.estimate, picture.reference)
@@ -54,11 +54,3 @@ class Observer:
     def _on_status(self, key: str, payload: bytes) -> None:
         with suppress(MessageError):
             self._picture.note_status(decode(ProcessStatus, payload))
-
-    def _on_event(self, key: str, payload: bytes) -> None:
-        with suppress(MessageError):
-            self._picture.note_event(decode(FsmEvent, payload))
-
-    def _on_command(self, key: str, payload: bytes) -> None:
-        with suppress(MessageError):
-            self._picture.note_command(decode(OperatorCommand, payload).command)

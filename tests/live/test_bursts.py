@@ -10,7 +10,7 @@ from live_bytes import KEYS, assert_same_bytes
 
 from surefoot.bus.codec import decode, encode
 from surefoot.bus.message import specs
-from surefoot.bus.messages import JointCommand, SimTruth, StateEstimate
+from surefoot.bus.messages import FsmEvent, JointCommand, OperatorCommand, SimTruth, StateEstimate
 from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components import clock_messages as clock
 from surefoot.components.registry import component_class
@@ -118,6 +118,23 @@ def test_in_real_time_no_second_publisher_moves_the_robot(stack):
         truths = [decode(SimTruth, payload) for payload in live.heard["sim/truth"][begun:]]
     assert max(np.abs(truth.tau).max() for truth in truths) < 5.0
     assert live.last("fsm/reference").state == "DAMP"
+
+
+def test_no_second_publisher_ends_a_run_or_its_screen(supervised):
+    live = supervised("run.command=stand")
+    live.wait(lambda: len(live.status) == len(PROCESSES) and live.t() > 0.3)
+    mad = replace(
+        live.last("fsm/reference"), finished=True, leg=9, state="DAMP", reason="[/bold] fallen", t=1e9, seq=10**9
+    )
+    for _ in range(20):
+        live.session.put("fsm/reference", encode(mad))
+        live.session.put("state/estimate", encode(StateEstimate(valid=True, seq=10**9)))
+        live.session.put("supervisor/request", b"\xff\xc1 nothing")
+        live.session.put("fsm/event", encode(FsmEvent(valid=True, seq=10**9, kind="[/bold]", leg=99)))
+        live.session.put("operator/command", encode(OperatorCommand(valid=True, seq=10**9, command="[/bold]")))
+        live.go_on(0.02)
+    assert live.run.poll() is None, live.said()
+    assert live.stands() and "fallen" not in live.said()
 
 
 def forged_releases(true):
