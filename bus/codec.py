@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Callable
 from functools import cache
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 import msgpack
 import numpy as np
@@ -17,6 +18,8 @@ _TYPE = "message"
 
 _LITTLE = {"float64": "<f8", "float32": "<f4", "int64": "<i8", "uint8": "u1", "bool": "?"}
 
+_LONGEST = 2**31 - 1
+"""Of an axis: the product with a zero beside it says nothing of the others."""
 
 M = TypeVar("M", bound=Message)
 
@@ -81,11 +84,11 @@ def decode(cls: type[M], data: bytes) -> M:
     try:
         fields = msgpack.unpackb(data)
     except Exception as error:
-        raise MessageError(f"{cls.__name__}: not msgpack ({error}); {len(data)} bytes dropped") from None
+        raise MessageError(f"{cls.__name__}: not msgpack ({error!s:.80}); {len(data)} bytes dropped") from None
     if not isinstance(fields, dict):
         raise MessageError(f"{cls.__name__}: expected a map of fields, got {type(fields).__name__}")
     if fields.get(_TYPE) != cls.__name__:
-        raise MessageError(f"{cls.__name__}: the field {_TYPE!r} says {fields.get(_TYPE)!r:.80}: another type")
+        raise MessageError(f"{cls.__name__}: the field {_TYPE!r} says {_shown(fields.get(_TYPE))}: another type")
     values = {}
     for name, spec, dtype in _plan(cls):
         if name in fields:
@@ -104,7 +107,7 @@ def check(message: M) -> M:
         if dtype is not None:
             _check_shape(type(message), name, spec, np.shape(value))
         if spec.finite and spec.kind in ("array", "number") and not np.isfinite(value).all():
-            raise MessageError(f"{type(message).__name__}.{name} = {value}: not finite")
+            _refuse_not_finite(type(message), name, value)
     return message
 
 
@@ -122,39 +125,57 @@ def _decode_field(cls: type, name: str, spec: FieldSpec, dtype: np.dtype | None,
     if dtype is None:
         expected = _PYTHON[spec.kind]
         if not isinstance(value, expected) or (isinstance(value, bool) and spec.kind != "flag"):
-            raise MessageError(f"{cls.__name__}.{name} = {value!r:.80}: expected {expected[0].__name__}")
+            _refuse(cls, name, _shown(value), f"expected {expected[0].__name__}")
         if spec.kind == "names":
             if not all(isinstance(item, str) for item in value):
-                raise MessageError(f"{cls.__name__}.{name}: expected strings only")
+                _refuse(cls, name, _shown(value), "expected strings only")
             return tuple(value)
         if spec.kind == "number":
             value = float(value)
             if spec.finite and value - value != 0.0:
-                raise MessageError(f"{cls.__name__}.{name} = {value}: not finite")
+                _refuse(cls, name, value, "not finite")
         return value
     shape = spec.shape
     if -1 in shape:
         if not (isinstance(value, list) and len(value) == 2 and isinstance(value[0], list)):
-            raise MessageError(f"{cls.__name__}.{name}: expected [shape, bytes]")
+            _refuse(cls, name, _shown(value), "expected [shape, bytes]")
         shape, value = value
-        if not all(type(n) is int and n >= 0 for n in shape):
-            raise MessageError(f"{cls.__name__}.{name}: shape {shape!r:.80} is not a list of lengths")
+        if not all(type(n) is int and 0 <= n <= _LONGEST for n in shape):
+            _refuse(cls, name, f"shape {_shown(shape)}", f"expected a list of lengths up to {_LONGEST}")
         _check_shape(cls, name, spec, tuple(shape))
     if not isinstance(value, bytes):
-        raise MessageError(f"{cls.__name__}.{name}: expected bytes, got {type(value).__name__}")
+        _refuse(cls, name, _shown(value), "expected bytes")
     count = 1
     for n in shape:
         count *= n
     if len(value) != count * dtype.itemsize:
-        raise MessageError(
-            f"{cls.__name__}.{name}: {len(value)} bytes, expected {count * dtype.itemsize} for {list(shape)}"
-        )
+        _refuse(cls, name, f"{len(value)} bytes", f"expected {count * dtype.itemsize} for {list(shape)}")
     result = np.frombuffer(value, dtype).reshape(shape)
-    if spec.finite and dtype.kind == "f" and not np.isfinite(result).all():
-        raise MessageError(f"{cls.__name__}.{name} = {result}: not finite")
+    if dtype.kind == "f":
+        if spec.finite and not np.isfinite(result).all():
+            _refuse_not_finite(cls, name, result)
+    elif dtype.kind == "b" and value.translate(None, b"\0\1"):
+        # numpy takes such a byte for what it is told, and counts or inverts it wrongly.
+        _refuse(cls, name, _shown(value), "expected bytes 0 and 1")
     return result
 
 
 def _check_shape(cls: type, name: str, spec: FieldSpec, shape: tuple[int, ...]) -> None:
     if len(shape) != len(spec.shape) or any(a not in (-1, b) for a, b in zip(spec.shape, shape, strict=True)):
-        raise MessageError(f"{cls.__name__}.{name}: shape {tuple(shape)}, expected {spec.shape}")
+        _refuse(cls, name, f"shape {_shown(shape)}", f"expected {spec.shape}")
+
+
+def _refuse(cls: type, name: str, value: Any, why: str) -> NoReturn:
+    raise MessageError(f"{cls.__name__}.{name} = {value}: {why}")
+
+
+def _refuse_not_finite(cls: type, name: str, value: Any) -> NoReturn:
+    """Names the first number that is none."""
+    values = np.asarray(value)
+    place = tuple(np.argwhere(~np.isfinite(values))[0].tolist())
+    _refuse(cls, name + (str(list(place)) if place else ""), values[place], "not finite")
+
+
+def _shown(value: Any) -> str:
+    """A value of any size and depth in a few characters of one line."""
+    return reprlib.repr(value)[:80]

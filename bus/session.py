@@ -21,6 +21,7 @@ from surefoot.bus.errors import BusError
 from surefoot.config.network import Network
 
 _CONNECT_MS = 30_000
+_MARK_BYTES = 32
 _TX = {
     "lease": 2000,
     "keep_alive": 4,
@@ -37,12 +38,23 @@ def socket_path(namespace: str) -> Path:
     return Path(tempfile.gettempdir()) / f"surefoot-{os.getuid()}" / f"{namespace}.sock"
 
 
+class Marked(bytes):
+    """Bytes from the bus, with the mark of the session that published them.
+
+    Attributes:
+        writer: the session's own, as the bus numbers it; empty when the bytes came some other way.
+    """
+
+    writer: bytes = b""
+
+
 class Session:
     """Publishes and subscribes bytes under a namespace.
 
     Attributes:
         namespace: prefix of every key on the wire.
         where: the endpoint of the hub, for people.
+        mark: what it publishes bears it; no other session has the same.
     """
 
     def __init__(
@@ -80,8 +92,16 @@ class Session:
             self._session = zenoh.open(zenoh.Config.from_json5(json.dumps(_config(side, hub, connect_ms))))
         except zenoh.ZError as error:
             raise BusError(_no_session(self.where, namespace, network, hub, str(error))) from None
+        self.mark = _mark_of(self._session.info.zid())
+        self._hubs: tuple[bytes, ...] = (self.mark,) if hub else ()
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._kept: list[object] = []
+
+    def hub_marks(self) -> tuple[bytes, ...]:
+        """Of the hub this session is connected to, or was last; its own if it is one."""
+        if self.mark not in self._hubs:
+            self._hubs = tuple(map(_mark_of, self._session.info.routers_zid())) or self._hubs
+        return self._hubs
 
     def put(self, key: str, payload: bytes, lossless: bool = True) -> None:
         """Publish bytes on a key of the namespace.
@@ -97,18 +117,21 @@ class Session:
             control = zenoh.CongestionControl.BLOCK if lossless else zenoh.CongestionControl.DROP
             publisher = self._session.declare_publisher(f"{self._prefix}/{key}", congestion_control=control)
             self._publishers[key] = publisher
-        publisher.put(payload)
+        publisher.put(payload, attachment=self.mark)
 
-    def subscribe(self, key: str, receive: Callable[[str, bytes], None]) -> None:
-        """Call `receive(key, bytes)` for every message; it must only store, it runs in the session's thread."""
+    def subscribe(self, key: str, receive: Callable[[str, Marked], None]) -> None:
+        """Call `receive(key, bytes)` for every message; it must only store, it runs in the session's thread.
+
+        The bytes bear their writer's mark.
+        """
         skip = len(self._prefix) + 1
 
         def on_sample(sample: zenoh.Sample) -> None:
-            receive(str(sample.key_expr)[skip:], sample.payload.to_bytes())
+            receive(str(sample.key_expr)[skip:], _marked(sample))
 
         self._kept.append(self._session.declare_subscriber(f"{self._prefix}/{key}", on_sample))
 
-    def newest(self, key: str) -> Callable[[], bytes | None]:
+    def newest(self, key: str) -> Callable[[], Marked | None]:
         """A function that gives the newest message since it was last called, or None.
 
         Nothing runs between two calls, whatever the topic's rate: right for a display.
@@ -116,9 +139,9 @@ class Session:
         subscriber = self._session.declare_subscriber(f"{self._prefix}/{key}", zenoh.handlers.RingChannel(1))
         self._kept.append(subscriber)
 
-        def take() -> bytes | None:
+        def take() -> Marked | None:
             sample = subscriber.try_recv()
-            return None if sample is None else sample.payload.to_bytes()
+            return None if sample is None else _marked(sample)
 
         return take
 
@@ -130,19 +153,30 @@ class Session:
             with query:
                 answers = answer()
                 for index, payload in enumerate(answers):
-                    query.reply(f"{whole}/{index}-{len(answers)}", payload)
+                    query.reply(f"{whole}/{index}-{len(answers)}", payload, attachment=self.mark)
 
         self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
 
-    def ask(self, key: str, timeout_s: float = 2.0) -> list[bytes]:
-        """What is served under a key, in order; empty when nobody serves it, or not all of it has come in time."""
-        replies = self._session.get(f"{self._prefix}/{key}/*", timeout=timeout_s)
-        answers, count = {}, 0
+    def ask(self, key: str, timeout_s: float = 2.0) -> list[Marked]:
+        """What is served under a key, in order; empty when nobody serves it, or not all of it has come in time.
+
+        Of two that serve it everything comes, first all of one of them.
+        """
+        replies = self._session.get(
+            f"{self._prefix}/{key}/*", timeout=timeout_s, consolidation=zenoh.ConsolidationMode.NONE
+        )
+        answers: dict[bytes, dict[int, Marked]] = {}
+        counts: dict[bytes, int] = {}
         for reply in replies:
-            if reply.ok is not None:
-                index, _, total = str(reply.ok.key_expr).rsplit("/", 1)[1].partition("-")
-                answers[int(index)], count = reply.ok.payload.to_bytes(), int(total)
-        return [answers[index] for index in range(count)] if len(answers) == count else []
+            if reply.ok is None:
+                continue
+            index, _, total = str(reply.ok.key_expr).rsplit("/", 1)[1].partition("-")
+            if index.isdecimal() and total.isdecimal():
+                payload = _marked(reply.ok)
+                answers.setdefault(payload.writer, {})[int(index)] = payload
+                counts[payload.writer] = int(total)
+        whole = [writer for writer in sorted(answers) if len(answers[writer]) == counts[writer]]
+        return [answers[writer][index] for writer in whole for index in sorted(answers[writer])]
 
     def serve_each(self, key: str, answer: Callable[[int], bytes | None]) -> None:
         """Give `answer(number)`, if there is one, to everyone who asks for a number of a key."""
@@ -172,6 +206,17 @@ class Session:
     def close(self) -> None:
         """Leave the bus."""
         self._session.close()
+
+
+def _mark_of(session: zenoh.ZenohId) -> bytes:
+    return str(session).encode()
+
+
+def _marked(sample: zenoh.Sample) -> Marked:
+    marked = Marked(sample.payload.to_bytes())
+    if sample.attachment is not None:
+        marked.writer = sample.attachment.to_bytes()[:_MARK_BYTES]
+    return marked
 
 
 def refuse_second_hub(namespace: str) -> None:

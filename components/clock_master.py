@@ -10,7 +10,8 @@ from functools import partial
 from math import ceil
 from threading import Event, Lock
 
-from surefoot.bus.session import Session
+from surefoot.bus.errors import MessageError
+from surefoot.bus.session import Marked, Session
 from surefoot.bus.topics import PROCESSES, TOPICS, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
@@ -25,6 +26,7 @@ from surefoot.config.deployment import Deployment
 
 _LOOK_S = 0.2
 _WORTH_SAYING_S = 0.5
+_GONE_S = 2.0  # a process that has not answered for so long may be replaced by one that was started by hand
 _FOR_EVER_NS = 10**18
 
 
@@ -38,15 +40,22 @@ class ClockMaster:
     Simulated time does not pass a release + budget until that process has answered: a slow or restarted
     process slows time and changes nothing else. The last messages of every topic are kept here, for readers that
     come late or again: their writer may be gone.
+
+    Attributes:
+        session: the bus.
+        writers: marks of the sessions that are, or have been, each process.
+        refuse: counts and tells a message that is not what its key promises.
     """
 
     def __init__(self, deployment: Deployment, boot: int = 0, parent: int = 0):
         self._end = ProcessEnd(parent)
         self.session = Session(deployment.run.namespace, hub=True, network=deployment.network)
-        self._desk = OperatorDesk(self.session)
         serve_deployment(self.session, deployment)
         table = processes(deployment.mpc.profile)
         self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)
+        self.refuse = self._stepper.buffers.drop
+        self._desk = OperatorDesk(self.session, self.refuse)
+        self.writers: dict[str, list[bytes]] = {}
         self._remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
         executors: dict[str, Executor] = {"io": _HostedExecutor(self._stepper, self), **self._remote}
         self.scheduler = Scheduler(executors, table)
@@ -80,7 +89,7 @@ class ClockMaster:
             raise
         finally:
             for name in self._remote:
-                self.session.put(f"{clock.RELEASE}/{name}", clock.pack_release(clock.STOP_NS, {}))
+                self.session.put(f"{clock.RELEASE}/{name}", clock.pack_release(clock.Release(clock.STOP_NS, {})))
             self._stepper.deactivate(self.scheduler.t_ns / NS)  # time has ended: one release is all there is
             self._desk.close()
             self._stepper.close()
@@ -103,6 +112,12 @@ class ClockMaster:
             self._kept[key].extend(payloads)
         return {key: len(payloads) for key, payloads in sent.items()}
 
+    def note_writers(self) -> None:
+        """A process has come up, or up again: from now on it is one of those who may publish."""
+        here = {name: [self.session.mark] for name in ("io", "operator")}
+        self.writers = here | {name: list(each.known) for name, each in self._remote.items()}
+        self._stepper.buffers.trust(self.writers)
+
     def waiting(self, reason: str) -> None:
         """Say in words why time stands still."""
         self._stepper.health.reason = reason
@@ -120,15 +135,23 @@ class RemoteExecutor:
     """A component in another process, released and awaited over the bus.
 
     It keeps where that process stands after each step, and hands it to the one that takes its place.
+
+    Attributes:
+        known: marks of the sessions that have been that process.
     """
 
     def __init__(self, name: str, master: ClockMaster):
         self._name, self._master = name, master
+        self._outputs = {key for key, topic in TOPICS.items() if topic.writer == name}
         self._pending: tuple[int, dict[str, int]] | None = None
         self._resume = clock.Resume({}, b"")
         self._new_there = False
+        self._told: dict[str, list[bytes]] | None = None
         self._answered_ns = -1
         self._done: queue.SimpleQueue[tuple[clock.Done, dict[str, int]]] = queue.SimpleQueue()
+        self.known: set[bytes] = set()
+        self._boot = -1
+        self._waits_since = float("inf")
         self._ready = Event()
         self._lock = Lock()
         master.session.subscribe(f"{clock.DONE}/{name}", lambda key, payload: self._on_done(payload))
@@ -149,7 +172,7 @@ class RemoteExecutor:
         if self._pending is None:
             raise RuntimeError(f"{self._name} was collected before it was released")
         t_ns, visible = self._pending
-        begun = time.monotonic()
+        begun = self._waits_since = time.monotonic()
         said = False
         while True:
             try:
@@ -166,28 +189,54 @@ class RemoteExecutor:
         with self._lock:
             self._resume = clock.Resume(visible, done.snapshot)
             self._pending = None
+            self._waits_since = float("inf")
         if said:
             self._master.waiting("")
         return counts
 
-    def _on_done(self, payload: bytes) -> None:
+    def _on_done(self, payload: Marked) -> None:
         """Kept at once: who comes up now asks for what has been sent already and is not visible yet."""
-        done, pending = clock.unpack_done(payload), self._pending
-        if pending is None or done.t_ns != pending[0] or done.t_ns == self._answered_ns:
-            return  # said again, because a release was sent again
-        self._answered_ns = done.t_ns
-        self._done.put((done, self._master.keep(done.sent)))
+        try:
+            done = clock.unpack_done(payload)
+        except MessageError as error:
+            self._master.refuse(str(error))
+            return
+        others, pending = ", ".join(sorted(done.sent.keys() - self._outputs)), self._pending
+        if payload.writer not in self.known:
+            self._master.refuse(f"{clock.DONE}: a second {self._name} answers for {done.t_ns / NS:.3f} s")
+        elif others:
+            self._master.refuse(f"{clock.DONE}: {others:.80}: no output of {self._name}")
+        elif pending is not None and done.t_ns == pending[0] and done.t_ns != self._answered_ns:
+            # What is said again, because a release was sent again, is passed over.
+            self._answered_ns = done.t_ns
+            self._done.put((done, self._master.keep(done.sent)))
 
-    def _on_hello(self, payload: bytes) -> None:
+    def _on_hello(self, payload: Marked) -> None:
         """The process is up, or up again, or has heard nothing for a while: what it owes is asked once more."""
+        writer = payload.writer
+        try:
+            hello = clock.unpack_hello(payload)
+        except MessageError as error:
+            self._master.refuse(str(error))
+            return
+        gone = time.monotonic() - self._waits_since > _GONE_S
+        if not (hello.boot > self._boot or writer in self.known or gone):
+            self._master.refuse(f"{clock.HELLO}: a second {self._name}, while the first one answers")
+            return
         with self._lock:
-            self._new_there |= payload == clock.NEW
+            self._boot, self._told = hello.boot, None
+            self._new_there |= hello.new
+            self.known.add(writer)
+            self._master.note_writers()
             if self._pending is not None:
                 self._send(*self._pending)
         self._ready.set()
 
     def _send(self, t_ns: int, visible: dict[str, int]) -> None:
-        payload = clock.pack_release(t_ns, visible, self._resume if self._new_there else None)
+        resume = self._resume if self._new_there else None
+        writers = self._master.writers if self._told is not self._master.writers else None
+        self._told = self._master.writers
+        payload = clock.pack_release(clock.Release(t_ns, visible, resume, writers))
         self._new_there = False
         self._master.session.put(f"{clock.RELEASE}/{self._name}", payload)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -9,14 +10,12 @@ from typing import Any
 import msgpack
 import numpy as np
 
+from surefoot.bus.errors import MessageError
 from surefoot.bus.service_keys import DONE as DONE
 from surefoot.bus.service_keys import HELLO as HELLO
 from surefoot.bus.service_keys import KEPT as KEPT
 from surefoot.bus.service_keys import RELEASE as RELEASE
 from surefoot.bus.service_keys import REQUEST as REQUEST
-
-NEW, STILL_THERE = b"", b"still there"
-"""What a HELLO says: a process without memory of this run, or one that waits for a release."""
 
 STOP_NS = -1
 """Release time that means: end."""
@@ -36,6 +35,36 @@ class Resume:
 
 
 @dataclass(frozen=True)
+class Release:
+    """A step is due.
+
+    Attributes:
+        t_ns: its time [ns]; `STOP_NS`: end.
+        visible: how many messages of every topic are visible.
+        resume: after a HELLO, where the process takes up.
+        writers: marks of the sessions that are, or have been, each process; None where nothing has changed.
+    """
+
+    t_ns: int
+    visible: dict[str, int]
+    resume: Resume | None = None
+    writers: dict[str, list[bytes]] | None = None
+
+
+@dataclass(frozen=True)
+class Hello:
+    """A process is there.
+
+    Attributes:
+        boot: counts its restarts.
+        new: it has no memory of this run; otherwise it waits for a release.
+    """
+
+    boot: int
+    new: bool = True
+
+
+@dataclass(frozen=True)
 class Done:
     """A step is over.
 
@@ -50,15 +79,47 @@ class Done:
     snapshot: bytes
 
 
-def pack_release(t_ns: int, visible: dict[str, int], resume: Resume | None = None) -> bytes:
-    """A release at `t_ns` with how many messages of every topic are visible; `resume` after a HELLO."""
-    return msgpack.packb([t_ns, visible, resume and [resume.had, resume.snapshot]])
+def pack_release(release: Release) -> bytes:
+    """Bytes of a release."""
+    resume = release.resume and [release.resume.had, release.resume.snapshot]
+    return msgpack.packb([release.t_ns, release.visible, resume, release.writers])
 
 
-def unpack_release(payload: bytes) -> tuple[int, dict[str, int], Resume | None]:
-    """What `pack_release` packed."""
-    t_ns, visible, resume = msgpack.unpackb(payload)
-    return t_ns, visible, resume and Resume(*resume)
+def unpack_release(payload: bytes) -> Release:
+    """What `pack_release` packed.
+
+    Raises:
+        MessageError: it is no release.
+    """
+    t_ns, visible, resume, writers = _parts(payload, 4, RELEASE)
+    _require(type(t_ns) is int, RELEASE, "time", t_ns)
+    _require(_are_counts(visible), RELEASE, "counts", visible)
+    if writers is not None:
+        _require(_are_lists_of_bytes(writers), RELEASE, "writers", writers)
+    if resume is None:
+        return Release(t_ns, visible, None, writers)
+    _require(isinstance(resume, list) and len(resume) == 2, RELEASE, "resume", resume)
+    had, snapshot = resume
+    _require(_are_counts(had), RELEASE, "counts", had)
+    _require(isinstance(snapshot, bytes), RELEASE, "snapshot", snapshot)
+    return Release(t_ns, visible, Resume(had, snapshot), writers)
+
+
+def pack_hello(hello: Hello) -> bytes:
+    """Bytes of a greeting."""
+    return msgpack.packb([hello.boot, hello.new])
+
+
+def unpack_hello(payload: bytes) -> Hello:
+    """What `pack_hello` packed.
+
+    Raises:
+        MessageError: it is no greeting.
+    """
+    boot, new = _parts(payload, 2, HELLO)
+    _require(type(boot) is int and boot >= 0, HELLO, "boot", boot)
+    _require(type(new) is bool, HELLO, "new", new)
+    return Hello(boot, new)
 
 
 def pack_done(done: Done) -> bytes:
@@ -67,8 +128,16 @@ def pack_done(done: Done) -> bytes:
 
 
 def unpack_done(payload: bytes) -> Done:
-    """What `pack_done` packed."""
-    return Done(*msgpack.unpackb(payload))
+    """What `pack_done` packed.
+
+    Raises:
+        MessageError: it is no done token.
+    """
+    t_ns, sent, snapshot = _parts(payload, 3, DONE)
+    _require(type(t_ns) is int, DONE, "time", t_ns)
+    _require(_are_lists_of_bytes(sent), DONE, "messages", sent)
+    _require(isinstance(snapshot, bytes), DONE, "snapshot", snapshot)
+    return Done(t_ns, sent, snapshot)
 
 
 def pack_snapshot(state: dict[str, Any]) -> bytes:
@@ -79,6 +148,37 @@ def pack_snapshot(state: dict[str, Any]) -> bytes:
 def unpack_snapshot(payload: bytes) -> dict[str, Any]:
     """What `pack_snapshot` packed; arrays may be written to."""
     return msgpack.unpackb(payload, ext_hook=_unpack_array)
+
+
+def _parts(payload: bytes, count: int, what: str) -> list[Any]:
+    parts = _unpack(payload, what)
+    _require(isinstance(parts, list) and len(parts) == count, what, "whole", parts)
+    return parts
+
+
+def _unpack(payload: bytes, what: str) -> Any:
+    try:
+        return msgpack.unpackb(payload)
+    except Exception as error:
+        raise MessageError(f"{what}: not msgpack ({error!s:.80}); {len(payload)} bytes dropped") from None
+
+
+def _are_counts(value: Any) -> bool:
+    return isinstance(value, dict) and all(
+        isinstance(key, str) and type(count) is int and count >= 0 for key, count in value.items()
+    )
+
+
+def _are_lists_of_bytes(value: Any) -> bool:
+    return isinstance(value, dict) and all(
+        isinstance(name, str) and isinstance(items, list) and all(isinstance(item, bytes) for item in items)
+        for name, items in value.items()
+    )
+
+
+def _require(holds: bool, key: str, what: str, found: Any) -> None:
+    if not holds:
+        raise MessageError(f"{key}: {what} {reprlib.repr(found):.80} is not what the clock's messages hold")
 
 
 def _pack_array(value: Any) -> Any:

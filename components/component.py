@@ -44,12 +44,16 @@ class Inbox:
         return self._new[key]
 
     def fresh(self, key: str, t: float) -> Any:
-        """The newest message if it is valid and younger than the topic's `stale_after_s`, else None."""
+        """The newest message if it is valid and dated within the topic's `stale_after_s` of t, else None.
+
+        A date that is further ahead is as wrong as one that is past: an MPC's policy is for a moment to come, but
+        for no later one than that.
+        """
         message = self._latest[key]
         if message is None or not message.valid:
             return None
         limit = TOPICS[key].stale_after_s
-        return None if limit > 0.0 and t - message.t > limit else message
+        return None if limit > 0.0 and abs(t - message.t) > limit else message
 
     def deliver(self, key: str, message: Message) -> None:
         """Put a message in (the runner's business)."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import queue
 from collections import deque
+from collections.abc import Callable
 
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import OperatorCommand
@@ -15,27 +15,41 @@ from surefoot.components.topic_buffer import KEPT
 
 _TOPIC = "operator/command"
 _NAME = "operator"
+_LONGEST = 64  # characters of a command
 
 
 class OperatorDesk:
-    """Turns requests into messages on `operator/command`."""
+    """Turns requests into messages on `operator/command`.
 
-    def __init__(self, session: Session, lossless: bool = True):
-        """`lossless`: wait for a reader that is late; in real time io waits for nobody."""
-        self._session, self._lossless = session, lossless
-        self._requests: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    What is no word is refused here; which words are commands is the state machine's business, which answers.
+    """
+
+    def __init__(self, session: Session, refuse: Callable[[str], None], lossless: bool = True):
+        """For the process that holds the bus.
+
+        Args:
+            session: the bus.
+            refuse: told, by key, of each request that is no word.
+            lossless: wait for a reader that is late; in real time io waits for nobody.
+        """
+        self._session, self._refuse, self._lossless = session, refuse, lossless
+        self._requests: deque[bytes] = deque(maxlen=KEPT)
         self._kept: deque[bytes] = deque(maxlen=KEPT)
         self._sent = 0
         self._journal = Journal(_NAME)
-        session.subscribe(clock.REQUEST, lambda key, payload: self._requests.put(payload))
+        session.subscribe(clock.REQUEST, lambda key, payload: self._requests.append(payload))
         session.serve(f"{clock.KEPT}/{_TOPIC}", lambda: list(self._kept))
         session.serve_each(f"{LOG}/{_NAME}", self._journal.kept)
 
     def publish(self, t: float) -> int:
         """Publish at time `t` [s] what has been asked; how many commands that were."""
         count = 0
-        while not self._requests.empty():
-            command = self._requests.get().decode(errors="replace")
+        for _ in range(len(self._requests)):
+            asked = self._requests.popleft()
+            command = asked.decode(errors="replace")
+            if len(command) > _LONGEST or not command.isprintable() or "\ufffd" in command:
+                self._refuse(f"{clock.REQUEST}: {asked[:_LONGEST]!r:.80} is no command")
+                continue
             payload = encode(OperatorCommand(t=t, seq=self._sent, valid=True, command=command))
             self._kept.append(payload)
             self._session.put(_TOPIC, payload, self._lossless)

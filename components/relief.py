@@ -7,6 +7,7 @@ over from there; then it asks for the place itself. What answers that is the las
 from __future__ import annotations
 
 import queue
+import time
 from dataclasses import astuple, dataclass
 
 import msgpack
@@ -14,7 +15,7 @@ import msgpack
 from surefoot.bus.errors import BusError
 from surefoot.bus.service_keys import RELIEF_ANSWER as _ANSWER
 from surefoot.bus.service_keys import RELIEF_ASK as _ASK
-from surefoot.bus.session import Session
+from surefoot.bus.session import Marked, Session
 
 SHOW, GIVE = b"show", b"give"
 """What a successor asks: where the process stands, or its place."""
@@ -55,11 +56,13 @@ class Relief:
         self._session.subscribe(f"{_ASK}/{self._name}", lambda key, payload: self._heard.put(payload))
 
     def asked(self) -> bytes:
-        """What a successor asks, once; empty when nobody does."""
+        """What a successor asks, once; empty when nobody does. Other words are not heeded."""
         try:
-            return self._heard.get_nowait()
+            while (word := self._heard.get_nowait()) not in (SHOW, GIVE):
+                pass
         except queue.Empty:
             return b""
+        return word
 
     def answer(self, place: Place) -> None:
         """Tell the successor."""
@@ -70,15 +73,26 @@ class Relief:
         self._session.subscribe(f"{_ANSWER}/{self._name}", lambda key, payload: self._heard.put(payload))
 
     def ask(self, word: bytes) -> Place:
-        """The predecessor's answer to `SHOW` or `GIVE`.
+        """The predecessor's answer to `SHOW` or `GIVE`; what is none is not heeded.
+
+        Who is given the place publishes under its predecessor's mark: no reader can tell the two apart.
 
         Raises:
             BusError: there is none.
         """
         self._session.put(f"{_ASK}/{self._name}", word)
-        try:
-            return Place(*msgpack.unpackb(self._heard.get(timeout=_PATIENCE_S)))
-        except queue.Empty:
-            raise BusError(
-                f"{self._name} has not answered its successor for {_PATIENCE_S:g} s: it hangs, or is not there"
-            ) from None
+        end = time.monotonic() + _PATIENCE_S
+        while True:
+            try:
+                payload = self._heard.get(timeout=max(end - time.monotonic(), 0.0))
+            except queue.Empty:
+                raise BusError(
+                    f"{self._name} has not answered its successor for {_PATIENCE_S:g} s: it hangs, or is not there"
+                ) from None
+            try:
+                place = Place(*msgpack.unpackb(payload))
+            except Exception:  # of a second publisher
+                continue
+            if word == GIVE and isinstance(payload, Marked):
+                self._session.mark = payload.writer
+            return place

@@ -6,7 +6,8 @@ import gc
 import queue
 import time
 
-from surefoot.bus.session import Session
+from surefoot.bus.errors import MessageError
+from surefoot.bus.session import Marked, Session
 from surefoot.bus.topics import nominal_hz, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
@@ -42,7 +43,7 @@ class Runner:
             relieves: on the monotonic clock, take over from the process that runs under this name.
         """
         self._end = ProcessEnd(parent)
-        self._deployment, self._name = deployment, name
+        self._deployment, self._name, self._boot = deployment, name, boot
         self._process = processes(deployment.mpc.profile)[name]
         self._monotonic = deployment.run.clock == "monotonic"
         self._session = Session(deployment.run.namespace, hub=self.hub, network=deployment.network)
@@ -139,22 +140,34 @@ class Runner:
 
     def _follow_simulated_time(self) -> None:
         """Step at each release of the clock's master; the outputs, then the done token, answer it."""
-        releases: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        releases: queue.SimpleQueue[Marked] = queue.SimpleQueue()
         stepper, name = self._stepper, self._name
         self._session.subscribe(f"{clock.RELEASE}/{name}", lambda key, payload: releases.put(payload))
-        self._session.put(f"{clock.HELLO}/{name}", clock.NEW)
+        self._session.put(f"{clock.HELLO}/{name}", clock.pack_hello(clock.Hello(self._boot)))
         last_ns, answer, greeted = None, b"", time.monotonic()
         while not self._end.due:
             stepper.tell((last_ns or 0) / NS)
             try:
-                t_ns, visible, resume = clock.unpack_release(releases.get(timeout=_LOOK_S))
+                payload = releases.get(timeout=_LOOK_S)
+                release = clock.unpack_release(payload)
+            except MessageError as error:
+                stepper.buffers.drop(str(error))
+                continue
             except queue.Empty:
                 # The hub may have come up after the first greeting; later a release or its answer may be lost.
                 if last_ns is None or time.monotonic() - greeted > _GREET_S:
-                    self._session.put(f"{clock.HELLO}/{name}", clock.NEW if last_ns is None else clock.STILL_THERE)
+                    hello = clock.Hello(self._boot, new=last_ns is None)
+                    self._session.put(f"{clock.HELLO}/{name}", clock.pack_hello(hello))
                     greeted = time.monotonic()
                 continue
+            if payload.writer not in self._session.hub_marks():
+                at = release.t_ns / NS
+                stepper.buffers.drop(f"{clock.RELEASE}: a second clock releases for {at:.3f} s")
+                continue
             greeted = time.monotonic()
+            t_ns, visible = release.t_ns, release.visible
+            if release.writers is not None:
+                stepper.buffers.trust(release.writers)
             if t_ns == clock.STOP_NS:
                 return
             if last_ns is not None and t_ns < last_ns:
@@ -163,7 +176,7 @@ class Runner:
                 )
             if t_ns != last_ns:
                 if last_ns is None:
-                    stepper.resume(resume or clock.Resume({}, b""), visible)
+                    stepper.resume(release.resume or clock.Resume({}, b""), visible)
                 last_ns = t_ns
                 stepper.read_visible(visible)
                 stepper.step(t_ns / NS)
@@ -221,7 +234,7 @@ class HubRunner(Runner):
 
     def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0):
         super().__init__(deployment, name, boot, parent)
-        self._desk = OperatorDesk(self._session, lossless=False)
+        self._desk = OperatorDesk(self._session, self._stepper.buffers.drop, lossless=False)
         serve_time(self._session, deployment)
         serve_deployment(self._session, deployment)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import inf
 
 from surefoot.bus.codec import check, decode, encode
@@ -219,7 +219,7 @@ class Stepper:
             self._session.put(f"{LOG}/{self.component.name}", payload, lossless=False)
         return payload is not None
 
-    def _kept(self, key: str) -> list[bytes] | None:
+    def _kept(self, key: str) -> Sequence[bytes] | None:
         """The last messages of a topic, from who keeps them; None when nobody answers."""
         kept = self._session.ask(f"{clock.KEPT}/{key}") or None
         self.health.lost = (
@@ -229,7 +229,7 @@ class Stepper:
         self.look()
         return kept
 
-    def _await_kept(self, key: str) -> list[bytes]:
+    def _await_kept(self, key: str) -> Sequence[bytes]:
         """The same; waits until there is an answer."""
         while (kept := self._kept(key)) is None:
             time.sleep(_ASK_AGAIN_S)

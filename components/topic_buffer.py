@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from threading import Condition
 
 from surefoot.bus.codec import decode
 from surefoot.bus.errors import MessageError
 from surefoot.bus.message import Message
-from surefoot.bus.session import Session
-from surefoot.bus.topics import TOPICS
+from surefoot.bus.session import Marked, Session
+from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components.component import Inbox
 
 KEPT = 32
 """Messages of a topic that its writer keeps for a reader that comes late, or again."""
 
-_WINDOW = 256  # bytes wait for a reader at the most; a number further ahead than this is not the writer's
+_WINDOW = 256  # messages wait for a reader at the most; a number further ahead than this is not the writer's
+_WRITERS = 8  # of one topic are listened to between two steps
 _ON_ITS_WAY_S = 0.3
 _MISFITS = 8  # so many messages out of sequence in a row are a new sequence
+_SILENT_S = 1.0  # a writer that has been silent for so long may be another than before
 
 
-Ask = Callable[[str], list[bytes] | None]
+Ask = Callable[[str], Sequence[bytes] | None]
 """The last messages of a topic, from who keeps them; None when nobody can be asked now."""
 
 
@@ -35,11 +38,21 @@ class _Topic:
 
     def __init__(self, key: str):
         self.kind = TOPICS[key].message
-        self.waiting: deque[bytes] = deque(maxlen=_WINDOW)
+        self.waiting: dict[bytes, deque[bytes]] = {}
         self.early: dict[int, tuple[Message, int]] = {}
         self.had: dict[int, int] = {}
+        self.writers: dict[int, bytes] = {}
+        self.strange: deque[tuple[Message, bytes]] = deque()
+        self.trusted: dict[str, frozenset[bytes]] | None = None
         self.arrivals = self.first = self.next = self.misfits = 0
-        self.boot = -1
+        self.boot, self.t = -1, 0.0
+
+    def store(self, payload: bytes) -> None:
+        """Keep bytes until the next step; each writer has room of its own, whatever the others send."""
+        writer = getattr(payload, "writer", b"")
+        if writer in self.waiting or len(self.waiting) < _WRITERS:
+            self.waiting.setdefault(writer, deque(maxlen=_WINDOW)).append(payload)
+        self.arrivals += 1
 
     def jump(self, seq: int) -> None:
         """Read on from a sequence number; what lies before it is of no interest."""
@@ -47,17 +60,24 @@ class _Topic:
         for old in [each for each in self.early if each < seq]:
             del self.early[old]
 
+    def is_of_writer(self, message: Message, payload: bytes) -> bool:
+        """Whether the session that was heard first of this boot has sent it."""
+        writer = getattr(payload, "writer", b"")
+        return self.writers.setdefault(message.boot, writer) == writer
+
 
 class TopicBuffers:
     """Bytes in from the bus's thread, messages out to the step; a bad message is counted and dropped.
 
-    With simulated time every message has its place, by its sequence number: what comes twice or out of place
-    is another publisher's. On the monotonic clock the newest counts: of a stream that does not release the
-    reader nothing else is even looked at, unless it asks for all, and what falls behind is dropped.
+    With simulated time the clock's master says which sessions may publish, and every message has its place, by
+    its sequence number: what comes from elsewhere, twice or out of place is another publisher's. On the monotonic
+    clock the newest counts: of a stream that does not release the reader nothing else is even looked at, unless
+    it asks for all, and what falls behind is dropped. There the writer is the session that was heard first, after
+    a restart, which `boot` tells, the next; another is heard only if that one has been silent.
 
     Attributes:
         bad: messages dropped: malformed, or not of the topic's writer.
-        last_error: what was wrong with the latest of them, by topic.
+        last_error: what was wrong with the latest of them on each key, the newest first.
     """
 
     def __init__(self, keys: tuple[str, ...], trigger: str | None = None, complete: tuple[str, ...] = ()):
@@ -71,10 +91,12 @@ class TopicBuffers:
         """
         self.bad = 0
         self.last_error = ""
+        self._errors: dict[str, str] = {}
         self._arrived = Condition()
         self._topics = {key: _Topic(key) for key in keys}
         self._trigger, self._complete = trigger, complete
         self._newest: dict[str, Callable[[], bytes | None]] = {}
+        self._trusted: dict[str, frozenset[bytes]] | None = None
 
     def connect(self, session: Session) -> None:
         """Begin to listen."""
@@ -88,8 +110,7 @@ class TopicBuffers:
         """Store one message (the bus's thread)."""
         with self._arrived:
             topic = self._topics[key]
-            topic.waiting.append(payload)
-            topic.arrivals += 1
+            topic.store(payload)
             if self._trigger in (None, key):
                 self._arrived.notify_all()
 
@@ -106,10 +127,10 @@ class TopicBuffers:
         """Hand over everything that has arrived."""
         for key, topic in self._topics.items():
             if key in self._newest and (payload := self._newest[key]()) is not None:
-                topic.waiting.append(payload)
-            while topic.waiting:
-                message = self._decode(key, topic.waiting.popleft())
-                if message is not None and self._in_sequence(key, topic, message):
+                topic.store(payload)
+            for payload in self._take_waiting(topic):
+                message = self._decode(key, payload)
+                if message is not None and self._in_sequence(key, topic, message, payload):
                     inbox.deliver(key, message)
 
     @property
@@ -123,23 +144,37 @@ class TopicBuffers:
             topic = self._topics[key]
             topic.boot, topic.next, topic.first = boot, following, following
 
-    def _in_sequence(self, key: str, topic: _Topic, message: Message) -> bool:
+    def _in_sequence(self, key: str, topic: _Topic, message: Message, payload: bytes) -> bool:
         """Whether a message follows the last one; a restarted writer, or a long row of misfits, begins anew."""
-        if message.boot == topic.boot and message.seq < topic.first:
+        known = topic.is_of_writer(message, payload)
+        if known and message.boot == topic.boot and message.seq < topic.first:
             return False
         ahead = message.seq - topic.next
-        follows = message.boot > topic.boot or (message.boot == topic.boot and ahead >= 0)
-        if follows or topic.misfits >= _MISFITS:
-            topic.boot, topic.next, topic.misfits = message.boot, message.seq + 1, 0
+        follows = known and (message.boot > topic.boot or (message.boot == topic.boot and ahead >= 0))
+        if not follows and topic.misfits >= _MISFITS and (known or message.t - topic.t > _SILENT_S):
+            topic.writers[message.boot] = getattr(payload, "writer", b"")
+            follows = True
+        if follows:
+            topic.boot, topic.next, topic.misfits, topic.t = message.boot, message.seq + 1, 0, message.t
             topic.first = 0
             return True
         topic.misfits += 1
-        self._drop(f"{key}: message {message.seq} is out of place, next is {topic.next}: a second publisher?")
+        self._drop_misfit(key, topic, message, known)
         return False
 
     # Simulated time -------------------------------------------------------------------------------------
 
-    def resume(self, had: dict[str, int], visible: dict[str, int], kept: dict[str, list[bytes]], inbox: Inbox):
+    def trust(self, writers: Mapping[str, Sequence[bytes]]) -> None:
+        """Read only what these sessions publish: their marks by process, or "operator"."""
+        self._trusted = {name: frozenset(writers.get(name, ())) for name in (*PROCESSES, "operator")}
+
+    def resume(
+        self,
+        had: dict[str, int],
+        visible: dict[str, int],
+        kept: Mapping[str, Sequence[bytes]],
+        inbox: Inbox,
+    ) -> None:
         """Take the place of a reader that is gone.
 
         Args:
@@ -150,7 +185,7 @@ class TopicBuffers:
         """
         for key, topic in self._topics.items():
             seen = had.get(key, 0)
-            self._place(key, topic, kept.get(key, ()), seen - 1)
+            self._place(key, topic, self._of_io(key, kept.get(key, ())), seen - 1)
             oldest = min(topic.early, default=visible.get(key, 0))
             topic.jump(max(seen - 1, min(oldest, visible.get(key, 0)), 0))
             self._take(key, topic, seen, inbox)
@@ -173,19 +208,49 @@ class TopicBuffers:
             self._sort(key, topic)
             self._take(key, topic, wanted, inbox)
             while topic.next < wanted:
-                missing = topic.next
-                if not self._wait(topic, _ON_ITS_WAY_S):
-                    kept = ask(key)
-                    if kept is None:
-                        continue  # nothing is lost yet
-                    self._place(key, topic, kept, topic.next)
-                    self._take(key, topic, wanted, inbox)
-                if topic.next == missing and not self._wait(topic, timeout_s):
+                if not self._await_next(key, topic, wanted, inbox, timeout_s, ask):
                     lost = f"{key}: message {topic.next} of {wanted} did not arrive in {timeout_s:g} s"
                     topic.jump(min([wanted, *topic.early]))
+                    self._take(key, topic, wanted, inbox)
+            self._drop_strangers(key, topic)
+        return lost
+
+    def _await_next(
+        self,
+        key: str,
+        topic: _Topic,
+        wanted: int,
+        inbox: Inbox,
+        timeout_s: float,
+        ask: Ask,
+    ) -> bool:
+        """Wait for what is on its way, then ask for it; false if the next message is lost, whatever else comes."""
+        missing = topic.next
+        for asked, patience_s in ((False, _ON_ITS_WAY_S), (True, timeout_s)):
+            if asked:
+                if (kept := ask(key)) is None:
+                    return True  # nothing is lost yet
+                self._place(key, topic, self._of_io(key, kept), topic.next)
+                self._take(key, topic, wanted, inbox)
+                if topic.next > missing:
+                    return True
+            end = time.monotonic() + patience_s
+            while self._wait(topic, end - time.monotonic()):
                 self._sort(key, topic)
                 self._take(key, topic, wanted, inbox)
-        return lost
+                if topic.next > missing:
+                    return True
+        return False
+
+    def _of_io(self, key: str, kept: Sequence[bytes]) -> list[bytes]:
+        """Of what is kept of a topic, what io keeps: as good as from the topic's writer."""
+        vouched = []
+        for payload in kept:
+            if self._trusted is None or getattr(payload, "writer", b"") in self._trusted["io"]:
+                vouched.append(bytes(payload))
+            else:
+                self.drop(f"{key}: kept by a second publisher")
+        return vouched
 
     def _take(self, key: str, topic: _Topic, wanted: int, inbox: Inbox) -> None:
         """Hand over, in order and without a gap, what is here up to the count."""
@@ -197,8 +262,16 @@ class TopicBuffers:
             inbox.deliver(key, message)
 
     def _wait(self, topic: _Topic, timeout_s: float) -> bool:
+        """Until something has arrived; false when the time is up, whatever arrives."""
         with self._arrived:
-            return self._arrived.wait_for(lambda: bool(topic.waiting), timeout_s)
+            return timeout_s > 0.0 and self._arrived.wait_for(lambda: bool(topic.waiting), timeout_s)
+
+    def _take_waiting(self, topic: _Topic) -> list[bytes]:
+        if not topic.waiting:
+            return []
+        with self._arrived:
+            waiting, topic.waiting = topic.waiting, {}
+        return [payload for queue in waiting.values() for payload in queue]
 
     def _place(self, key: str, topic: _Topic, kept: Iterable[bytes], least: int) -> None:
         """Put what was kept for this reader in its place, from a sequence number on."""
@@ -211,8 +284,12 @@ class TopicBuffers:
 
     def _sort(self, key: str, topic: _Topic) -> None:
         """Decode what has arrived and put each message in its place, if that is free."""
-        while topic.waiting:
-            payload = topic.waiting.popleft()
+        payloads = self._take_waiting(topic)
+        if topic.trusted is not self._trusted:
+            topic.trusted = self._trusted
+            payloads = [payload for _, payload in topic.strange] + payloads
+            topic.strange.clear()
+        for payload in payloads:
             message = self._decode(key, payload)
             if message is None:
                 continue
@@ -220,22 +297,51 @@ class TopicBuffers:
             there = topic.early.get(seq)
             if seq < topic.first:
                 continue
-            if there is None and topic.next <= seq < topic.next + _WINDOW:
+            if not self._trusts(key, payload):
+                topic.strange.append((message, payload))
+            elif there is None and topic.next <= seq < topic.next + _WINDOW:
                 topic.early[seq] = message, mark
             elif there is not None and message.boot > there[0].boot:
                 topic.early[seq] = message, mark  # the writer was restarted before its step was over
             elif seq < topic.next and message.boot > topic.boot:
                 continue  # said before by a process that went when its step was over
             elif mark not in (topic.had.get(seq), there and there[1]):
-                self._drop(f"{key}: message {seq} is out of place, next is {topic.next}: a second publisher?")
+                self._drop_misfit(key, topic, message, known=True)
+
+    def _trusts(self, key: str, payload: bytes) -> bool:
+        """Whether its writer may publish it; bytes without a mark did not come over the bus."""
+        if self._trusted is None or not isinstance(payload, Marked):
+            return True
+        return payload.writer in self._trusted[TOPICS[key].writer]
+
+    def _drop_strangers(self, key: str, topic: _Topic) -> None:
+        """Drop what is not, and will hardly be, of a process that the clock's master knows.
+
+        One that has just come up may be heard before the release that tells of it.
+        """
+        kept: deque[tuple[Message, bytes]] = deque(maxlen=_WINDOW)
+        for message, payload in topic.strange:
+            if topic.next <= message.seq < topic.next + _WINDOW:
+                kept.append((message, payload))
+            else:
+                self._drop_misfit(key, topic, message, known=False)
+        topic.strange = kept
 
     def _decode(self, key: str, payload: bytes) -> Message | None:
         try:
             return decode(self._topics[key].kind, payload)
         except MessageError as error:
-            self._drop(f"{key}: {error}")
+            self.drop(f"{key}: {error}")
             return None
 
-    def _drop(self, why: str) -> None:
+    def _drop_misfit(self, key: str, topic: _Topic, message: Message, known: bool) -> None:
+        why = f"is out of place, next is {topic.next}: a second publisher?" if known else "is a second publisher's"
+        self.drop(f"{key}: message {message.seq} {why}")
+
+    def drop(self, why: str) -> None:
+        """Count a bad message; `why` begins with its key."""
         self.bad += 1
-        self.last_error = why
+        key = why.partition(":")[0]
+        self._errors.pop(key, None)
+        self._errors[key] = why
+        self.last_error = "; dropped ".join(reversed(self._errors.values()))

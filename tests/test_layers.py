@@ -59,3 +59,26 @@ def test_a_component_has_no_clock_no_file_and_no_chance(path):
             assert node.attr != "random", ast.unparse(node)
         elif isinstance(node, ast.Name):
             assert node.id not in ("open", "print", "input"), ast.unparse(node)
+
+
+DATES = {"bus/identity.py", "tools/commands/keys.py", "tools/keys.py", "tools/recording/about.py"}
+"""Where a date of the calendar is meant: how long a certificate is valid, when a recording was made."""
+
+WALL_CLOCK = {
+    "time": {"time", "time_ns", "localtime", "gmtime", "ctime", "asctime", "strftime", "CLOCK_REALTIME"},
+    "datetime": {"now", "utcnow", "today"},
+    "date": {"today"},
+}
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_nothing_goes_by_the_clock_on_the_wall(path):
+    """It may jump while a run goes on; `time.monotonic` and `time.perf_counter` do not."""
+    if str(path.relative_to(ROOT)) in DATES:
+        return
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.module == "time":
+            assert not WALL_CLOCK["time"] & {alias.name for alias in node.names}, ast.unparse(node)
+        elif isinstance(node, ast.Attribute):
+            name = ast.unparse(node.value).rsplit(".", 1)[-1]
+            assert node.attr not in WALL_CLOCK.get(name, ()), ast.unparse(node)

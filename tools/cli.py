@@ -19,6 +19,7 @@ from surefoot.tools.commands import (  # noqa: E402
     child,
     command,
     eval,
+    faults,
     info,
     keys,
     press,
@@ -35,7 +36,7 @@ from surefoot.tools.commands.call import CallError  # noqa: E402
 COMMANDS = (
     *(run, command, status, restart, child, topics, keys),
     *(record, info, replay),
-    *(eval, press, reproduce, bench),
+    *(eval, press, reproduce, faults, bench),
 )
 """In the order of the help."""
 

@@ -49,12 +49,13 @@ class Tape(Journal):
         t: float,
         state: bytes,
         latest: Mapping[str, Message | None],
-        next_seq: Mapping[str, int],
+        sent: Mapping[str, int],
+        boot: int,
         active: bool,
         fresh: bool = False,
     ) -> None:
-        self.calls.append((t, "note_checkpoint", (t, state, dict(latest), dict(next_seq), active, fresh)))
-        super().note_checkpoint(t, state, latest, next_seq, active, fresh)  # so that it knows when one is due
+        self.calls.append((t, "note_checkpoint", (t, state, dict(latest), dict(sent), boot, active, fresh)))
+        super().note_checkpoint(t, state, latest, sent, boot, active, fresh)  # so that it knows when one is due
         self.take()
 
     def messages(self) -> dict[str, list[bytes]]:

@@ -9,6 +9,7 @@ import pytest
 from surefoot.bus.codec import decode
 from surefoot.bus.errors import BusError
 from surefoot.bus.messages import FsmEvent, JointCommand, ProcessStatus
+from surefoot.bus.session import Marked
 from surefoot.components import clock_messages as clock
 from surefoot.components import runner
 from surefoot.components.clock_messages import pack_snapshot
@@ -222,7 +223,14 @@ class Clock(Bus):
     def put(self, key, payload, lossless=True):
         super().put(key, payload, lossless)
         if key == f"{clock.HELLO}/fsm" and self.left:
-            self.receive(f"{clock.RELEASE}/fsm", clock.pack_release(self.left.pop(0), {}))
+            t_ns = self.left.pop(0)
+            for writer, at in ((b"another", 7_000_000_000), (b"another", clock.STOP_NS), (b"hub", t_ns)):
+                payload = Marked(clock.pack_release(clock.Release(at, {})))
+                payload.writer = writer
+                self.receive(f"{clock.RELEASE}/fsm", payload)
+
+    def hub_marks(self):
+        return (b"hub",)
 
     def said(self, key):
         return [payload for at, payload in self.sent if at == key]
@@ -251,8 +259,9 @@ def test_a_release_that_comes_again_is_answered_again_without_another_step(follo
     assert [answer.t_ns for answer in answers] == [4_000_000, 4_000_000, 8_000_000, 8_000_000]
     assert answers[0] == answers[1] and answers[2] == answers[3]
     assert fsm._stepper.component.steps == 2 and len(bus.said("fsm/event")) == 2
-    hellos = bus.said(f"{clock.HELLO}/fsm")
-    assert hellos[0] == clock.NEW and set(hellos[1:]) == {clock.STILL_THERE}
+    first, *more = [clock.unpack_hello(payload) for payload in bus.said(f"{clock.HELLO}/fsm")]
+    assert first == clock.Hello(0) and set(more) == {clock.Hello(0, new=False)}
+    assert fsm._stepper.buffers.bad == 10 and "a second clock releases" in fsm._stepper.buffers.last_error
 
 
 def test_a_clock_that_goes_back_belongs_to_another_run(follower):

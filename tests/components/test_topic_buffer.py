@@ -2,6 +2,7 @@
 
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import JointCommand
+from surefoot.bus.session import Marked
 from surefoot.bus.topics import PROCESSES
 from surefoot.components.component import Inbox
 from surefoot.components.elevation_map.elevation_map import ElevationMap
@@ -10,10 +11,18 @@ from surefoot.components.topic_buffer import KEPT, TopicBuffers
 from surefoot.config.deployment import Deployment, Run
 
 KEY = "joint/command"
+WRITER, OTHER = b"the one ", b"another "
 
 
 def packed(seq, boot=0, t=0.0):
     return encode(JointCommand(t=t, seq=seq, boot=boot, valid=True))
+
+
+def marked(payload, writer=WRITER):
+    """As it comes from a writer's session."""
+    payload = Marked(payload)
+    payload.writer = writer
+    return payload
 
 
 class Reader:
@@ -93,14 +102,64 @@ def test_a_step_that_was_over_and_is_said_again_is_no_second_publisher():
     assert reader.buffers.bad == 1
 
 
+def test_what_another_session_says_is_dropped_however_plausible():
+    reader = Reader()
+    reader.put(marked(packed(0)), *(marked(packed(seq, t=9.0), OTHER) for seq in range(4)), marked(packed(1)))
+    reader.buffers.trust({"wbc": [WRITER]})
+    assert reader.read(2) == [(0, 0), (1, 0)] and reader.inbox.latest(KEY).t == 0.0
+    assert reader.buffers.bad == 2 and "a second publisher's" in reader.buffers.last_error
+    reader.put(
+        marked(packed(2)), marked(packed(10**6), OTHER), marked(packed(0), OTHER), marked(packed(3, t=9.0), b"")
+    )
+    assert reader.read(3) == [(2, 0)] and reader.inbox.latest(KEY).t == 0.0
+    assert reader.buffers.bad == 5
+    reader.put(marked(packed(3)))
+    assert reader.read(4) == [(3, 0)] and reader.inbox.latest(KEY).t == 0.0
+    assert reader.buffers.bad == 7
+
+
+def test_a_flood_of_another_session_does_not_push_out_the_writer():
+    reader = Reader()
+    reader.put(marked(packed(0)), marked(packed(1)))
+    reader.put(*(marked(packed(seq), OTHER) for seq in range(5000)))
+    reader.put(*(marked(packed(seq, t=9.0), b"%8d" % seq) for seq in range(100)))
+    reader.buffers.trust({"wbc": [WRITER]})
+    reader.put(marked(packed(2)))
+    assert reader.read(3) == [(0, 0), (1, 0), (2, 0)]
+
+
+def test_a_process_that_has_just_come_up_may_be_heard_before_the_master_tells_of_it():
+    reader = Reader()
+    reader.buffers.trust({"wbc": [WRITER]})
+    reader.put(marked(packed(0)), marked(packed(1, boot=1), OTHER))
+    assert reader.read(1) == [(0, 0)] and reader.buffers.bad == 0
+    reader.buffers.trust({"wbc": [WRITER, OTHER]})
+    reader.put(marked(packed(2, boot=1), OTHER))
+    assert reader.read(3) == [(1, 1), (2, 1)] and reader.buffers.bad == 0
+
+
+def test_in_real_time_another_session_is_dropped_until_the_writer_has_been_silent():
+    reader = Reader(trigger=KEY)
+    for k in range(30):
+        reader.put(marked(packed(k, t=0.01 * k)), marked(packed(100 + k, t=0.01 * k), OTHER))
+        reader.buffers.deliver_all(reader.inbox)
+    assert [message.seq for message in reader.inbox.new(KEY)] == list(range(30)) and reader.buffers.bad == 30
+    reader.put(*(marked(packed(200 + k, t=0.3 + 0.1 * k), OTHER) for k in range(20)))
+    reader.buffers.deliver_all(reader.inbox)
+    assert reader.inbox.latest(KEY).seq == 219 and reader.inbox.new(KEY)[30].t > 1.0
+
+
 def test_a_new_reader_takes_the_place_of_the_old_one():
     reader = Reader()
-    kept = {KEY: [packed(seq) for seq in range(2, 8)]}
-    reader.put(packed(7))
+    kept = {KEY: [marked(packed(seq)) for seq in range(2, 8)]}
+    kept[KEY] += [marked(packed(seq, t=9.0), OTHER) for seq in range(8)]
+    reader.put(marked(packed(7)))
+    reader.buffers.trust({"io": [b"nobody", WRITER], "wbc": [WRITER]})
     reader.buffers.resume({KEY: 5}, {KEY: 7}, kept, reader.inbox)
+    assert reader.inbox.latest(KEY).t == 0.0 and reader.buffers.bad == 8
     assert reader.inbox.latest(KEY).seq == 4 and not reader.inbox.new(KEY)
     assert [seq for seq, _ in reader.read(7)] == [5, 6]
-    assert [seq for seq, _ in reader.read(8)] == [7] and reader.buffers.bad == 0
+    assert [seq for seq, _ in reader.read(8)] == [7] and reader.buffers.bad == 8
 
 
 def test_a_reader_that_is_released_seldom_gets_the_last_ones():

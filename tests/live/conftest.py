@@ -53,11 +53,13 @@ class Ear:
         self.session.subscribe("status/*", self._hear_status)
 
     def _hear(self, key, payload):
-        with self.lock:
-            self.heard[key].append(payload)
+        if payload.writer != self.session.mark:  # what a test itself says is not heard
+            with self.lock:
+                self.heard[key].append(payload)
 
     def _hear_status(self, key, payload):
-        self.status[key.split("/")[1]] = decode(ProcessStatus, payload)
+        if payload.writer != self.session.mark:
+            self.status[key.split("/")[1]] = decode(ProcessStatus, payload)
 
     def last(self, key):
         """The newest message of a topic."""

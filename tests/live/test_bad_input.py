@@ -31,7 +31,7 @@ def test_bad_messages_are_reported_by_topic_and_change_nothing(stack):
             "fsm/reference",
             with_field(reference, p_WF=np.zeros(9).tobytes()),
             "mpc",
-            r"p_WF: 72 bytes, expected 96",
+            r"p_WF = 72 bytes: expected 96",
         ),
         ("state/estimate", with_field(estimate, q=np.full(12, np.inf).tobytes()), "fsm", r"StateEstimate\.q"),
         (

@@ -3,46 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
+from live_bytes import KEYS, first_difference, local_bytes
 
-from surefoot.bus.codec import decode, encode
+from surefoot.bus.codec import decode
 from surefoot.bus.messages import LegStatus
 from surefoot.bus.topics import PROCESSES, TOPICS
-from surefoot.components.lockstep import Lockstep
 
-KEYS = [key for key in TOPICS if not key.startswith("status/")]
 UNTIL_S = 2.9  # plans a stride, shifts its base, lifts a foot off, touches down and begins to probe
-
-
-def local_bytes(deployment, until_s):
-    stack = Lockstep(deployment)
-    heard = {key: [] for key in KEYS}
-    stack.listen(lambda key, message: heard[key].append(encode(message, volatile=False)) if key in heard else None)
-    stack.command("forward")
-    stack.run(until_s)
-    return heard
-
-
-def first_difference(heard, expected):
-    """Where the bytes that were heard first differ from those of one process, but for `boot`; "" nowhere."""
-    found = []
-    for key, want in expected.items():
-        kind = TOPICS[key].message
-        newest = {}
-        for message in (decode(kind, payload) for payload in heard[key]):
-            newest[message.seq] = message  # half a step of a process that was restarted within it is repeated
-        for index, payload in enumerate(want):
-            wanted, got = decode(kind, payload), newest.get(index)
-            if got is None:
-                found.append((wanted.t, f"{key}: message {index} of {len(want)} is missing"))
-            elif encode(replace(got, boot=0), volatile=False) != payload:
-                names = [
-                    name for name in vars(got) if not np.array_equal(getattr(got, name), getattr(wanted, name))
-                ]
-                found.append((wanted.t, f"{key} differs at {wanted.t:.3f} s, message {index}, in {names}"))
-            else:
-                continue
-            break
-    return "; ".join(words for _, words in sorted(found)[:3])
 
 
 def test_over_the_bus_and_in_one_process_give_the_same_bytes(stack):

@@ -1,0 +1,52 @@
+"""What a run publishes, byte by byte: over the bus, and in one process."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from surefoot.bus.codec import decode, encode
+from surefoot.bus.topics import TOPICS
+from surefoot.components.lockstep import Lockstep
+
+KEYS = [key for key in TOPICS if not key.startswith("status/")]
+
+
+def local_bytes(deployment, until_s, command="forward"):
+    """Messages of each topic of a run in one process."""
+    stack = Lockstep(deployment)
+    heard = {key: [] for key in KEYS}
+    stack.listen(lambda key, message: heard[key].append(encode(message, volatile=False)) if key in heard else None)
+    stack.command(command)
+    stack.run(until_s)
+    return heard
+
+
+def first_difference(heard, expected):
+    """Where the bytes that were heard first differ from those of one process, but for `boot`; "" nowhere."""
+    found = []
+    for key, want in expected.items():
+        kind = TOPICS[key].message
+        newest = {}
+        for message in (decode(kind, payload) for payload in heard[key]):
+            newest[message.seq] = message  # half a step of a process that was restarted within it is repeated
+        for index, payload in enumerate(want):
+            wanted, got = decode(kind, payload), newest.get(index)
+            if got is None:
+                found.append((wanted.t, f"{key}: message {index} of {len(want)} is missing"))
+            elif encode(replace(got, boot=0), volatile=False) != payload:
+                names = [
+                    name for name in vars(got) if not np.array_equal(getattr(got, name), getattr(wanted, name))
+                ]
+                found.append((wanted.t, f"{key} differs at {wanted.t:.3f} s, message {index}, in {names}"))
+            else:
+                continue
+            break
+    return "; ".join(words for _, words in sorted(found)[:3])
+
+
+def assert_same_bytes(live):
+    """What has been heard so far is what one process publishes, but for the last instants."""
+    expected = local_bytes(live.deployment, live.t() - 0.05)
+    with live.lock:
+        heard = {key: list(payloads) for key, payloads in live.heard.items()}
+    assert first_difference(heard, expected) == ""
