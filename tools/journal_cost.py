@@ -13,7 +13,8 @@ from typing import Any
 
 from surefoot.bus.errors import BusError
 from surefoot.bus.message import Message
-from surefoot.bus.recording.journal import CHECKPOINT_S, LOG, Journal
+from surefoot.bus.recording.journal import CHECKPOINT_S, Journal
+from surefoot.bus.service_keys import LOG
 from surefoot.bus.session import Session
 from surefoot.components.clock_messages import pack_snapshot
 from surefoot.components.deployment_desk import serve_deployment
