@@ -168,12 +168,13 @@ class Session:
         answers: dict[bytes, dict[int, Marked]] = {}
         counts: dict[bytes, int] = {}
         for reply in replies:
-            if reply.ok is not None:
-                index, _, total = str(reply.ok.key_expr).rsplit("/", 1)[1].partition("-")
-                if index.isdecimal() and total.isdecimal():
-                    payload = _marked(reply.ok)
-                    answers.setdefault(payload.writer, {})[int(index)] = payload
-                    counts[payload.writer] = int(total)
+            if reply.ok is None:
+                continue
+            index, _, total = str(reply.ok.key_expr).rsplit("/", 1)[1].partition("-")
+            if index.isdecimal() and total.isdecimal():
+                payload = _marked(reply.ok)
+                answers.setdefault(payload.writer, {})[int(index)] = payload
+                counts[payload.writer] = int(total)
         whole = [writer for writer in sorted(answers) if len(answers[writer]) == counts[writer]]
         return [answers[writer][index] for writer in whole for index in sorted(answers[writer])]
 

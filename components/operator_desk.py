@@ -14,8 +14,8 @@ from surefoot.components import clock_messages as clock
 from surefoot.components.topic_buffer import KEPT
 
 _TOPIC = "operator/command"
-_LONGEST = 64  # characters of a command
 _NAME = "operator"
+_LONGEST = 64  # characters of a command
 
 
 class OperatorDesk:

@@ -13,7 +13,8 @@ from typing import Any
 
 from surefoot.bus.errors import BusError
 from surefoot.bus.message import Message
-from surefoot.bus.recording.journal import CHECKPOINT_S, LOG, Journal
+from surefoot.bus.recording.journal import CHECKPOINT_S, Journal
+from surefoot.bus.service_keys import LOG
 from surefoot.bus.session import Session
 from surefoot.components.clock_messages import pack_snapshot
 from surefoot.components.deployment_desk import serve_deployment
@@ -49,12 +50,13 @@ class Tape(Journal):
         t: float,
         state: bytes,
         latest: Mapping[str, Message | None],
-        next_seq: Mapping[str, int],
+        sent: Mapping[str, int],
+        boot: int,
         active: bool,
         fresh: bool = False,
     ) -> None:
-        self.calls.append((t, "note_checkpoint", (t, state, dict(latest), dict(next_seq), active, fresh)))
-        super().note_checkpoint(t, state, latest, next_seq, active, fresh)  # so that it knows when one is due
+        self.calls.append((t, "note_checkpoint", (t, state, dict(latest), dict(sent), boot, active, fresh)))
+        super().note_checkpoint(t, state, latest, sent, boot, active, fresh)  # so that it knows when one is due
         self.take()
 
     def messages(self) -> dict[str, list[bytes]]:
