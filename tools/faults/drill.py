@@ -166,8 +166,8 @@ class Drill:
             return Result(case, not left and bool(told), f"run over, left behind: {left or 'nothing'}", told)
         if run.over:
             seconds = seconds if seconds is not None else (states[-1].t - t if states else 0.0)
-            left = run.left_behind()
-            outcome = "run over, robot damped" + (f", left behind: {', '.join(left)}" if left else "")
+            left = ", ".join(run.left_behind())
+            outcome = "run over, robot damped" + (f", left behind: {left}" if left else "")
             return Result(case, not left and bool(told), outcome, told, seconds)
         if seconds is None:
             return Result(case, height > _STANDS_M, f"stays up, trunk at {height:.2f} m", told)
