@@ -162,8 +162,8 @@ class Drill:
         seconds = min(damped) - t if damped else None
         height = truths[-1].p_WB[2] if truths else 0.0
         if run.over and case.fault == "kill" and case.process == "io":
-            left = ", ".join(run.left_behind())
-            return Result(case, not left and bool(told), f"run over, left behind: {left or 'nothing'}", told)
+            others = ", ".join(run.left_behind())
+            return Result(case, not others and bool(told), f"run over, left behind: {others or 'nothing'}", told)
         if run.over:
             seconds = seconds if seconds is not None else (states[-1].t - t if states else 0.0)
             left = ", ".join(run.left_behind())
