@@ -65,4 +65,5 @@ def test_in_real_time_a_crash_ends_the_run_and_no_old_command_is_ever_applied(pr
     if result.outcome.startswith("not reached: the robot was damped"):
         return
     assert result.good, result
-    assert f"{process} ended with signal 9" in result.told
+    # The state machine may see that the chain is broken before the supervisor sees why.
+    assert f"{process} ended with signal 9" in result.told or "the robot was damped" in result.told

@@ -58,7 +58,7 @@ def test_a_lent_process_that_is_killed_is_replaced_and_nothing_is_left_of_a_run_
     live = supervised("run.command=stand")
     live.wait(lambda: live.t() > 0.2)
     child = live.borrow("mpc")
-    live.wait(lambda: live.status["mpc"].pid == child.pid)
+    live.wait(lambda: "mpc" in live.status and live.status["mpc"].pid == child.pid)
     child.kill()
     live.wait(lambda: live.status["mpc"].boot == 2)
     live.go_on(0.2)
