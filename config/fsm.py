@@ -68,7 +68,7 @@ class Fsm:
     probing: bool = True  # false: the paper's baseline, feet are trusted on contact
     support_polygon: bool = True  # eq. (5)
     fixed_force_n: Force = 0.0  # > 0: this normal force instead of the optimised envelope
-    force_over_static: Annotated[float, Within(0.5, 3.0)] = 1.2  # most that is asked, of what statics allow
+    force_over_static: Annotated[float, Within(0.5, 3.0)] = 1.0  # most that is asked, of what statics allow
     cap_forces: bool = False  # mpc and trajopt spare feet what is above their certificates
     adaptive_probing: bool = False  # a foothold that the map knows to bear enough is not probed again
     dwell_s: Duration = 0.1  # each force (Sec. II-C)
