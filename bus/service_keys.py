@@ -19,5 +19,8 @@ LOG = "log"
 REQUEST = "operator/request"
 """People's commands to the process of io, which dates and numbers them."""
 
+DEPLOYMENT = "deployment"
+"""The process of io answers with the resolved configuration."""
+
 SUPERVISOR_REQUEST = "supervisor/request"
-"""What people ask of the supervisor: "restart NAME" or "stop"."""
+"""What people ask of the supervisor: "restart NAME", "stop", or "lend NAME PID"."""

@@ -6,17 +6,21 @@ import json
 from typing import Any
 
 from surefoot.bus.errors import BusError
+from surefoot.bus.service_keys import DEPLOYMENT
 from surefoot.bus.session import Session
 from surefoot.config.deployment import Deployment
 from surefoot.config.typed_toml import to_table
 
-_KEY = "deployment"
-
 
 def serve_deployment(session: Session, deployment: Deployment) -> None:
     """Answer who asks with the resolved configuration; by the process that holds the bus."""
-    payload = json.dumps(to_table(deployment)).encode()
-    session.serve(_KEY, lambda: [payload])
+    serve_tables(session, to_table(deployment))
+
+
+def serve_tables(session: Session, tables: dict[str, Any]) -> None:
+    """The same of a configuration that is given as tables, such as a recording's."""
+    payload = json.dumps(tables).encode()
+    session.serve(DEPLOYMENT, lambda: [payload])
 
 
 def ask_deployment(session: Session) -> dict[str, Any]:
@@ -25,7 +29,7 @@ def ask_deployment(session: Session) -> dict[str, Any]:
     Raises:
         BusError: nobody answers.
     """
-    answers = session.ask(_KEY)
+    answers = session.ask(DEPLOYMENT)
     if not answers:
         raise BusError("the stack on this bus does not say what is running: is it still starting?")
     return json.loads(answers[0])

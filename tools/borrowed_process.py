@@ -12,9 +12,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from surefoot.bus.errors import BusError
+from surefoot.bus.service_keys import SUPERVISOR_REQUEST
 from surefoot.bus.session import Session, refuse_second_hub
 from surefoot.tools.other_process import OtherProcess
-from surefoot.tools.supervisor_messages import ANSWER, NOTICE, REQUEST, Notice, unpack_answer, unpack_notice
+from surefoot.tools.supervisor_messages import ANSWER, NOTICE, Notice, unpack_answer, unpack_notice
 
 _CONNECT_MS = 10_000
 _ANSWER_S = 20.0  # the supervisor may be ending one process and then another
@@ -51,7 +52,7 @@ def borrow(namespace: str, name: str, run: Notice) -> int:
     session = Session(namespace, connect_ms=_CONNECT_MS)
     try:
         session.subscribe(f"{ANSWER}/{os.getpid()}", lambda key, payload: answers.put(payload))
-        session.put(REQUEST, f"lend {name} {os.getpid()}".encode())
+        session.put(SUPERVISOR_REQUEST, f"lend {name} {os.getpid()}".encode())
         answer = unpack_answer(answers.get(timeout=_ANSWER_S))
     except queue.Empty:
         raise BusError(

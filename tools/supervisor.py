@@ -14,6 +14,7 @@ from pathlib import Path
 
 from surefoot.bus.endpoints import check_keys
 from surefoot.bus.errors import BusError
+from surefoot.bus.service_keys import SUPERVISOR_REQUEST
 from surefoot.bus.session import Session, refuse_second_hub
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
@@ -29,7 +30,6 @@ from surefoot.tools.restart_queue import RestartQueue
 from surefoot.tools.supervisor_messages import (
     ANSWER,
     NOTICE,
-    REQUEST,
     Answer,
     Notice,
     Post,
@@ -433,7 +433,9 @@ class Supervisor:
 
     def _listen(self, session: Session) -> None:
         self._observer = Observer(session, self.picture, SupportMargin(self._deployment.load_robot()))
-        session.subscribe(REQUEST, lambda key, payload: self._requests.put(payload.decode(errors="replace")))
+        session.subscribe(
+            SUPERVISOR_REQUEST, lambda key, payload: self._requests.put(payload.decode(errors="replace"))
+        )
         session.serve(NOTICE, lambda: [self._notice()])
 
     def _look(self, each: Callable[[Picture], None]) -> None:

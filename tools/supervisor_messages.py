@@ -6,9 +6,6 @@ from dataclasses import asdict, dataclass, field
 
 import msgpack
 
-REQUEST = "supervisor/request"
-"""Key on which a supervisor is asked: "restart NAME", "stop", or "lend NAME PID"."""
-
 NOTICE = "supervisor/notice"
 """Key of a `Notice`, published twice a second and given to whoever asks for it."""
 

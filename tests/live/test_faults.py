@@ -63,7 +63,7 @@ def test_in_real_time_a_crash_ends_the_run_and_no_old_command_is_ever_applied(pr
     """On a machine too slow for real time the robot may be damped before the crash: that too is told, in time."""
     result = Drill(CONFIG / "flat.toml", [], tmp_path).monotonic(Case("standing", "kill", process))
     if result.outcome.startswith("not reached: the robot was damped"):
-        return
+        pytest.skip(f"this machine is too busy for real time: {result.outcome}")
     assert result.good, result
     # The state machine may see that the chain is broken before the supervisor sees why.
     assert f"{process} ended with signal 9" in result.told or "the robot was damped" in result.told

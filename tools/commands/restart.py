@@ -26,11 +26,11 @@ def add(commands: argparse._SubParsersAction) -> None:
 
 
 def _run(call: argparse.Namespace) -> int:
+    from surefoot.bus.service_keys import SUPERVISOR_REQUEST
     from surefoot.bus.topics import PROCESSES
-    from surefoot.tools.supervisor_messages import REQUEST
 
     if call.name not in PROCESSES or call.name == "io":
         names = ", ".join(name for name in PROCESSES if name != "io")
         raise CallError(f"cannot restart {call.name!r}; processes that can be: {names} (io holds robot and bus)")
-    say_on_bus(call, REQUEST, f"restart {call.name}")
+    say_on_bus(call, SUPERVISOR_REQUEST, f"restart {call.name}")
     return 0

@@ -15,12 +15,12 @@ from typing import Any
 from surefoot.bus.codec import decode
 from surefoot.bus.errors import BusError
 from surefoot.bus.messages import ProcessStatus
+from surefoot.bus.service_keys import SUPERVISOR_REQUEST
 from surefoot.bus.session import Session
 from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components import clock_messages as clock
 from surefoot.config.deployment import load_deployment
 from surefoot.tools.faults.case import phase_of
-from surefoot.tools.supervisor import REQUEST
 
 KEYS = tuple(key for key in TOPICS if not key.startswith("status/"))
 _LOOK_S = 0.02
@@ -108,7 +108,7 @@ class ObservedRun:
 
     def restart(self, process: str) -> None:
         """Ask the supervisor for a restart."""
-        self._put(REQUEST, f"restart {process}")
+        self._put(SUPERVISOR_REQUEST, f"restart {process}")
 
     def signal(self, process: str, number: int) -> None:
         """Send a signal to a process, or to "all" of them."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import heapq
-import json
 import time
 from collections.abc import Callable, Iterator
 from itertools import count
@@ -13,6 +12,7 @@ from surefoot.bus.errors import RecordingError
 from surefoot.bus.recording.reader import Recorded, Recording
 from surefoot.bus.session import Session
 from surefoot.bus.topics import TOPICS
+from surefoot.components.deployment_desk import serve_tables
 
 _AHEAD_S = 2.0  # journals of different processes lie this far apart in the file at the most
 _SAY_S = 5.0
@@ -36,7 +36,7 @@ def playback(
     """
     recording = Recording(path)
     session = Session(namespace, hub=True)
-    session.serve("deployment", lambda: [json.dumps(recording.config).encode()])
+    serve_tables(session, recording.config)
     say(f"playing {path} on namespace {namespace!r} at {speed:g} x; Ctrl-C ends it")
     begun = told = time.monotonic()
     first, sent = None, 0
