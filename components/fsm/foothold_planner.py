@@ -57,6 +57,7 @@ class FootholdPlanner:
         com_B: np.ndarray,
         reserve_W: np.ndarray,
         depth_m: float = 0.0,
+        length_m: float | None = None,
     ) -> np.ndarray | None:
         """Base pose that keeps the centre of mass inside the other three feet and reaches a foothold.
 
@@ -70,6 +71,7 @@ class FootholdPlanner:
             com_B: (3,) centre of mass from the trunk's origin, in the world's axes [m].
             reserve_W: (3,) what must be in reach beyond the foothold: the point probed in front of it [m].
             depth_m: how much lower than that its ground may lie, for the leg at its full length [m].
+            length_m: what no leg may be longer than; by default what steps are planned with [m].
 
         Returns:
             (6,) the pose, or None when no height above the least reaches it.
@@ -82,13 +84,14 @@ class FootholdPlanner:
         base_xy = triangle.nearest(wish, settings.margin_m + settings.margin_extra_m) - com_B[:2]
         carrying = np.delete(p_WF, leg, axis=0)
         height = self._height
+        length_m = settings.leg_length_plan_m if length_m is None else length_m
         while height >= self._lowest - 1e-9:
             pose = self.pose(base_xy, carrying, normal_W, yaw, height)
             feet[leg] = foothold_W + reserve_W
             deep = feet.copy()
             deep[leg] -= depth_m * normal_W
             if (
-                self.leg_lengths(pose, feet).max() <= settings.leg_length_plan_m
+                self.leg_lengths(pose, feet).max() <= length_m
                 and self.leg_lengths(pose, deep)[leg] <= settings.leg_length_max_m
             ):
                 return pose

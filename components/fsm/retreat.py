@@ -22,7 +22,7 @@ from surefoot.config.robot import LEGS
 class Retreat:
     """How the leg whose turn it is gives up a foothold, or its turn."""
 
-    memory = Memory("_freed", "_why_back")
+    memory = Memory("_freed", "_why_back", "_swing_s")
 
     def __init__(
         self,
@@ -38,6 +38,7 @@ class Retreat:
         self._swing, self._motion, self._turn = swing, motion, turn
         self._freed = False
         self._why_back = ""
+        self._swing_s = settings.swing_s
 
     def begin_leg_up(self, now: Observation, freed: bool = False) -> None:
         """The foot leaves the ground at once; the base stays inside the other three feet.
@@ -71,14 +72,16 @@ class Retreat:
     def begin_return(self, now: Observation, why: str) -> None:
         """The leg goes back to where it stood; a foot that presses is unloaded first, and the MPC knows ahead.
 
-        A foot that leaves the ground under load throws the base over.
+        A foot that leaves the ground under load throws the base over. From where the base has gone for a far
+        foothold the way back may be too long for the leg: then the base comes back with it.
         """
         settings, motion, leg = self._settings, self._motion, self._turn.leg
         self._why_back, self._turn.no_way_back = why, ""
         safe_W = self._watch.safe(leg)
+        self._swing_s = max(settings.swing_s, self._bring_in_reach(safe_W, now))
         if motion.in_air:
             self._swing.plan(now.t, safe_W, now)
-            motion.lift_off(now, settings.swing_s)
+            motion.lift_off(now, self._swing_s)
         else:
             normal = motion.reference.normal_W
             forces = np.array([now.normal_force(leg) * normal, settings.unload_n * normal])
@@ -90,7 +93,7 @@ class Retreat:
         motion, leg = self._motion, self._turn.leg
         if not motion.in_air:
             if now.t >= motion.reference.swing_t0:
-                motion.lift_off(now, self._settings.swing_s)
+                motion.lift_off(now, self._swing_s)
             return None
         if self._swing.landed(now, back=True):
             self._swing.touched(now)
@@ -113,6 +116,29 @@ class Retreat:
         if self._may_put_off:
             return Arrow(State.PRE_OPT, f"{why}: {LEGS[turn.leg]} is put off")
         return Arrow(State.STOPPED, why)
+
+    def _bring_in_reach(self, safe_W: np.ndarray, now: Observation) -> float:
+        """Shift the base, if it must, to where the leg reaches its safe foothold (3,); how long that takes [s].
+
+        The ground there may have given way by as much as is no collapse.
+        """
+        settings, planner, motion, leg = self._settings, self._planner, self._motion, self._turn.leg
+        feet, normal, heading = motion.reference.p_WF.copy(), motion.reference.normal_W, self._course.heading
+        feet[leg] = safe_W - settings.collapse_m * normal
+        if planner.leg_lengths(now.pose, feet)[leg] <= settings.leg_length_max_m:
+            return 0.0
+        for length_m in (settings.leg_length_plan_m, settings.leg_length_max_m):
+            pose = planner.support_pose(
+                leg, feet[leg], feet, normal, heading, now.com_B, np.zeros(3), length_m=length_m
+            )
+            if pose is not None:
+                break
+        else:
+            return 0.0
+        distance = float(np.linalg.norm(pose[:3] - now.estimate.p_WB))
+        duration = max(settings.shift_s, distance / settings.shift_speed)
+        motion.shift_base(now, pose, duration)
+        return duration
 
     @property
     def _may_put_off(self) -> bool:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from puppet import Puppet
+from puppet import FOOT_Z, Puppet
 
 from surefoot.bus.messages import LegStatus
 from surefoot.components.fsm.support_triangle import SupportTriangle
@@ -397,3 +397,21 @@ def test_only_a_foot_that_has_been_stopped_has_met_ground_early(share, met):
     assert planned[0, 2] < -0.05
     puppet.cycle.step(replace(now, estimate=replace(now.estimate, force_W=force_W, v_WF=v_WF, contact=contact)))
     assert (puppet.cycle.state == "PROBE") == met
+
+
+def test_the_base_comes_back_with_a_leg_that_has_set_out_far_ahead():
+    puppet = Puppet(Fsm(probe_around=False, alternatives=0), forward=False)
+    puppet.feet[RL, 0] -= 0.23
+    puppet.cycle.stand_up(puppet.observe())
+    puppet.cycle.walk(puppet.observe(), np.array([1.0, 0.0]), "forward")
+    far = 0.17 * np.array([1.0, 0.0, 0.0])
+    puppet.map = lambda request: {"foothold_WF": request.target_WF + far}
+    puppet.placed = lambda request: request.target_WF + far
+    puppet.reach("DETECT_CONTACT")
+    safe, ahead = puppet.feet[RL].copy(), puppet.pose.copy()
+    puppet.ground_z[RL] = -1.0
+    puppet.reach("RETURN_SAFE")
+    puppet.ground_z[RL] = FOOT_Z - 0.025
+    assert puppet.run(3.0, lambda: puppet.cycle.state != "RETURN_SAFE")
+    assert puppet.cycle.state == "PRE_OPT", puppet.cycle.reason
+    assert np.hypot(*(puppet.feet[RL] - safe)[:2]) < 0.01 and puppet.pose[0] < ahead[0]
