@@ -52,6 +52,11 @@ class Watched:
         """
         return now - self.heard if self.status is not None else self.told_silent_s
 
+    def begin_anew(self) -> None:
+        """Another takes its place; nothing has been heard of that one."""
+        self.restarts += 1
+        self.status, self.out = None, ""
+
     @property
     def exit_code(self) -> int | None:
         """How it ended; None while it runs, or before it was started."""
@@ -97,6 +102,11 @@ class Picture:
     def t(self) -> float:
         """Time of the run [s]."""
         return self.reference.t if self.reference is not None else 0.0
+
+    @property
+    def state(self) -> str:
+        """Of the state machine; empty before it has spoken."""
+        return self.reference.state if self.reference is not None else ""
 
     @property
     def restarts(self) -> int:

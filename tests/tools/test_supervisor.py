@@ -12,6 +12,7 @@ from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
 from surefoot.config.deployment import Deployment, Run
 from surefoot.config.network import Network
+from surefoot.tools import launcher, lending, supervisor_desk
 from surefoot.tools import supervisor as supervisor_module
 from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.supervisor import Supervisor
@@ -42,6 +43,7 @@ class Fake(Supervisor):
     def __init__(self, *args):
         super().__init__(*args)
         self.launched = []
+        self._launcher.launch = self._launch
         for watched in self.picture.processes.values():
             watched.popen = Child()
 
@@ -101,7 +103,7 @@ def test_in_real_time_a_successor_is_ready_before_its_predecessor_leaves(restart
 
 def test_a_process_goes_on_if_its_successor_fails(restart):
     supervisor = restart("wbc", "STAND")
-    supervisor._successors["wbc"].code = 1
+    supervisor._handovers._successors["wbc"].code = 1
     watched = supervisor.picture.processes["wbc"]
     assert supervisor._reconcile() == "" and watched.exit_code is None and watched.restarts == 0
     assert "wbc goes on as it was: its successor failed; wbc ended with exit code 1" in supervisor.notes[-1]
@@ -111,7 +113,7 @@ def test_a_process_goes_on_if_its_successor_fails(restart):
 def test_what_the_robot_can_be_without_is_then_started_anew(restart, name, state):
     supervisor = restart(name, state)
     before = supervisor.picture.processes[name].popen
-    supervisor._successors[name].code = 1
+    supervisor._handovers._successors[name].code = 1
     assert supervisor._reconcile() == "" and before.code == 0
     assert supervisor.launched[1:] == [(name, 1)]
     assert f"{name} restarted on request, without its memory" in supervisor.notes[-1]
@@ -120,7 +122,7 @@ def test_what_the_robot_can_be_without_is_then_started_anew(restart, name, state
 def test_a_stop_ends_a_successor_too(restart):
     supervisor = restart("mpc", "STAND")
     supervisor.stop()
-    assert supervisor._successors["mpc"].code == 0
+    assert supervisor._handovers._successors["mpc"].code == 0
 
 
 def test_in_simulation_everything_but_io_is(restart):
@@ -145,7 +147,7 @@ def test_a_stop_is_carried_through_whoever_presses_ctrl_c_again(tmp_path, monkey
         os.kill(os.getpid(), signal.SIGHUP)
         ended.append(names[popen])
 
-    monkeypatch.setattr("surefoot.tools.supervisor._end", end)
+    monkeypatch.setattr(supervisor_module, "end_process", end)
     before = signal.getsignal(signal.SIGINT)
     supervisor.stop()
     assert sorted(ended) == sorted(PROCESSES) and ended[-1] == "io"
@@ -179,7 +181,7 @@ def test_one_that_is_stopped_still_ends_in_order(tmp_path, sleeper):
 
 
 def test_one_that_hangs_is_killed_in_its_time(tmp_path, sleeper, monkeypatch):
-    monkeypatch.setattr(supervisor_module, "KILL_AFTER_S", 0.2)
+    monkeypatch.setattr(launcher, "KILL_AFTER_S", 0.2)
     supervisor = Supervisor(tmp_path / "flat.toml", [], Deployment())
     for name in ("mpc", "io"):
         supervisor.picture.processes[name].popen = sleeper("signal.signal(signal.SIGTERM, signal.SIG_IGN)")
@@ -188,28 +190,19 @@ def test_one_that_hangs_is_killed_in_its_time(tmp_path, sleeper, monkeypatch):
 
 
 class Desk:
-    """A supervisor that starts nothing; what it would have started, commanded and answered."""
+    """A supervisor that starts nothing; what it would have started and answered."""
 
     def __init__(self, tmp_path, clock="simulated", sources=None):
         deployment = Deployment(run=Run(clock=clock, log_dir=str(tmp_path)))
         self.supervisor = Supervisor(tmp_path / "flat.toml", [], deployment, sources)
         self.done, self.answers = [], []
-        self.supervisor._command = self.done.append
-        self.supervisor._answer = lambda pid, answer: self.answers.append((pid, answer))
-        start = self.supervisor._start
-
-        def only_grant(name):
-            if self.supervisor.picture.processes[name].lent_to:
-                start(name)
-            else:
-                self.done.append(name)
-
-        self.supervisor._start = only_grant
+        self.supervisor._start = lambda watched: self.done.append(watched.name)
+        self.supervisor._lending._answer = lambda pid, answer: self.answers.append((pid, answer))
         self.picture = self.supervisor.picture
 
     def ask(self, *requests):
         for request in requests:
-            self.supervisor._requests.put(request)
+            self.supervisor._desk.ask(request)
         return self.supervisor._reconcile()
 
     @property
@@ -261,7 +254,7 @@ def test_io_and_in_real_time_what_holds_the_robot_are_not_lent(tmp_path, sleeper
 
 
 def test_a_lent_process_is_told_to_end_with_the_run_and_not_killed(tmp_path, sleeper, monkeypatch):
-    monkeypatch.setattr(supervisor_module, "KILL_AFTER_S", 0.2)
+    monkeypatch.setattr(lending, "KILL_AFTER_S", 0.2)
     desk = Desk(tmp_path)
     good, at_a_prompt = sleeper(), sleeper("signal.signal(signal.SIGTERM, signal.SIG_IGN)")
     desk.ask(f"lend wbc {good.pid}", f"lend mpc {at_a_prompt.pid}")
@@ -353,8 +346,8 @@ def test_each_machine_starts_its_own_processes_and_that_of_io_gives_the_command(
     supervisor = Supervisor(tmp_path / "flat.toml", [], Deployment(run=run, network=network))
     started, bus = [], Bus()
     monkeypatch.setattr(supervisor_module, "check_keys", lambda network: None)
-    monkeypatch.setattr(supervisor, "_start", started.append)
-    monkeypatch.setattr(supervisor, "_connect", lambda: bus)
+    monkeypatch.setattr(supervisor, "_start", lambda watched: started.append(watched.name))
+    monkeypatch.setattr(supervisor_desk, "Session", lambda *args, **kwargs: bus)
     monkeypatch.setattr(supervisor, "_await_io", lambda each: None)
     supervisor.picture.processes["fsm"].status = ProcessStatus(process="fsm")
     assert supervisor.run(lambda picture: "enough") == "enough"
