@@ -43,7 +43,11 @@ def troubles(picture: Picture, now: float | None = None) -> dict[str, str]:
         if words := _absence(watched, now):
             absent[name] = words
         elif status is not None:
-            parts = [status.reason, *(f"{each} is too old" for each in _stale(status))]
+            parts = [
+                status.reason,
+                *(f"{each} is too old" for each in _stale(status)),
+                _estranged(picture, status),
+            ]
             if watched.slow >= _SLOW and not still:
                 parts.append(f"makes {status.rate_hz:.0f} of {status.nominal_hz:.0f} steps a second")
             if words := "; ".join(part for part in parts if part):
@@ -175,6 +179,14 @@ def _stale(status: ProcessStatus) -> list[str]:
         for key, age in zip(status.input, status.input_age_s, strict=False)
         if key in TOPICS and age > TOPICS[key].stale_after_s > 0.0
     ]
+
+
+def _estranged(picture: Picture, status: ProcessStatus) -> str:
+    """In words that a process runs with other settings than io; empty while both have the same."""
+    io = picture.processes["io"].status
+    if io is None or io.settings == status.settings:
+        return ""
+    return "runs with other settings than io"
 
 
 def _late(picture: Picture) -> str:

@@ -202,7 +202,7 @@ def _row(watched: Watched, trouble: str) -> dict[str, Any]:
         for key, age in zip(status.input, status.input_age_s, strict=False)
         if key in TOPICS
     ]
-    names = ("life", "reason", "pid", "boot", "steps", "rate_hz", "nominal_hz")
+    names = ("life", "reason", "pid", "boot", "settings", "steps", "rate_hz", "nominal_hz")
     figures = ("step_p50_ms", "step_p99_ms", "step_max_ms", "overruns", "bad_messages")
     silent = round(time.monotonic() - watched.heard, 2)
     return row | {name: getattr(status, name) for name in names + figures} | {"silent_s": silent, "inputs": inputs}

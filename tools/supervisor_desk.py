@@ -12,6 +12,7 @@ from surefoot.bus.errors import BusError
 from surefoot.bus.service_keys import SUPERVISOR_REQUEST
 from surefoot.bus.session import Session
 from surefoot.components import clock_messages as clock
+from surefoot.components.deployment_desk import check_settings
 from surefoot.config.deployment import Deployment
 from surefoot.tools.launcher import Launcher
 from surefoot.tools.observer import Observer
@@ -47,9 +48,12 @@ class SupervisorDesk:
         """Join the bus as soon as io holds it, and listen.
 
         Raises:
-            BusError: io has ended, or does not open the bus in its time.
+            BusError: io has ended, does not open the bus in its time, or runs with other settings than this
+                machine is to.
         """
         session = self._session = self._connect(launcher)
+        if not self._deployment.network.at_hub:
+            check_settings(session, self._deployment, self._deployment.network.here)
         self._observer = Observer(session, self._picture, SupportMargin(self._deployment.load_robot()))
         session.subscribe(SUPERVISOR_REQUEST, lambda key, payload: self.ask(payload.decode(errors="replace")))
         session.serve(NOTICE, lambda: [self._notice()])

@@ -103,6 +103,15 @@ def test_in_real_time_a_rate_that_stays_low_is_told_and_one_low_figure_is_not():
     assert troubles(picture, NOW) == {}
 
 
+def test_a_process_that_runs_with_other_settings_than_io_is_named():
+    picture = walking()
+    for name in PROCESSES:
+        say(picture, name, settings="0a1b2c3d")
+    assert troubles(picture, NOW) == {}
+    say(picture, "mpc", settings="ffffffff")
+    assert troubles(picture, NOW) == {"mpc": "runs with other settings than io"}
+
+
 def test_a_silent_hub_and_a_silent_bus_are_two_things():
     picture = walking()
     picture.processes["io"].heard = NOW - 4.0

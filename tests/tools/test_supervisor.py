@@ -1,17 +1,22 @@
 """Which process may be restarted or lent when, and that a stop is carried through."""
 
+import json
 import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
+from surefoot.bus.errors import BusError
 from surefoot.bus.messages import MotionReference, ProcessStatus
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
 from surefoot.config.deployment import Deployment, Run
+from surefoot.config.hw import Hw
 from surefoot.config.network import Network
+from surefoot.config.typed_toml import to_table
 from surefoot.tools import launcher, lending, supervisor_desk
 from surefoot.tools import supervisor as supervisor_module
 from surefoot.tools.reload.source_watch import SourceWatch
@@ -314,10 +319,13 @@ HOSTS = {"robot": ("io", "estimator", "wbc", "fsm"), "laptop": ("mpc", "trajopt"
 
 
 class Bus:
-    """In place of the session."""
+    """In place of the session, to an io that runs a deployment."""
 
-    def __init__(self, *args, **kwargs):
-        self.said = []
+    def __init__(self, deployment):
+        self.said, self._deployment = [], deployment
+
+    def ask(self, key):
+        return [json.dumps(to_table(self._deployment)).encode()]
 
     def newest(self, key):
         return lambda: None
@@ -336,20 +344,40 @@ class Bus:
         pass
 
 
+@pytest.fixture
+def machine(tmp_path, monkeypatch):
+    """Makes the supervisor of a machine; what it starts, and its bus."""
+
+    def make(host, clock="simulated", seed_of_io=0):
+        network = Network(hosts=HOSTS, listen="tls/0.0.0.0:7448", address="10.0.0.1", host=host)
+        run = Run(clock=clock, log_dir=str(tmp_path), namespace="nobody", command="stand")
+        deployment = Deployment(run=run, network=network)
+        (tmp_path / "flat.toml").touch()
+        supervisor = Supervisor(tmp_path / "flat.toml", [], deployment)
+        started, bus = [], Bus(replace(deployment, hw=Hw(seed=seed_of_io)))
+        monkeypatch.setattr(supervisor_module, "check_keys", lambda network: None)
+        monkeypatch.setattr(supervisor, "_start", lambda watched: started.append(watched.name))
+        monkeypatch.setattr(supervisor_desk, "Session", lambda *args, **kwargs: bus)
+        monkeypatch.setattr(supervisor, "_await_io", lambda each: None)
+        supervisor.picture.processes["fsm"].status = ProcessStatus(process="fsm")
+        return supervisor, started, bus
+
+    return make
+
+
+def test_a_machine_with_other_settings_than_ios_starts_nothing(machine):
+    supervisor, started, _ = machine("laptop", seed_of_io=3)
+    with pytest.raises(
+        BusError, match=r"laptop has other settings than io: hw\.seed = 0, not 3; give every machine"
+    ):
+        supervisor.run(lambda picture: "enough")
+    assert started == []
+
+
 @pytest.mark.parametrize("clock", ["simulated", "monotonic"])
 @pytest.mark.parametrize("host", ["robot", "laptop"])
-def test_each_machine_starts_its_own_processes_and_that_of_io_gives_the_command(
-    tmp_path, monkeypatch, host, clock
-):
-    network = Network(hosts=HOSTS, listen="tls/0.0.0.0:7448", address="10.0.0.1", host=host)
-    run = Run(clock=clock, log_dir=str(tmp_path), namespace="nobody", command="stand")
-    supervisor = Supervisor(tmp_path / "flat.toml", [], Deployment(run=run, network=network))
-    started, bus = [], Bus()
-    monkeypatch.setattr(supervisor_module, "check_keys", lambda network: None)
-    monkeypatch.setattr(supervisor, "_start", lambda watched: started.append(watched.name))
-    monkeypatch.setattr(supervisor_desk, "Session", lambda *args, **kwargs: bus)
-    monkeypatch.setattr(supervisor, "_await_io", lambda each: None)
-    supervisor.picture.processes["fsm"].status = ProcessStatus(process="fsm")
+def test_each_machine_starts_its_own_processes_and_that_of_io_gives_the_command(machine, host, clock):
+    supervisor, started, bus = machine(host, clock)
     assert supervisor.run(lambda picture: "enough") == "enough"
     assert started == list(HOSTS[host])
     assert [payload for _, payload in bus.said] == ([b"stand"] if host == "robot" else [])
