@@ -31,8 +31,15 @@ class Launcher:
         self._guardian: Guardian | None = None
 
     def open(self) -> None:
-        """Make room for the logs and start the guardian: what is launched from now on has it."""
+        """Make room for the logs and start the guardian: what is launched from now on has it.
+
+        The file is copied there: a process that is restarted reads what the others have read, whoever has changed
+        the original since.
+        """
         self._log_dir.mkdir(parents=True, exist_ok=True)
+        text = self._config.read_bytes()
+        self._config = self._log_dir / "deployment.toml"
+        self._config.write_bytes(text)
         self._guardian = Guardian(self.log_of("supervisor"))
 
     def close(self) -> None:
