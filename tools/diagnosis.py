@@ -13,6 +13,9 @@ from surefoot.tools.picture import Picture, Watched
 SILENT_S = 3.0
 """A process tells its status twice a second; one that has not for so long is stopped or hangs."""
 
+CLOCK_STANDS_S = 0.8
+"""With the simulated clock io says at least so often that it goes on, or for whom it waits."""
+
 _SLOW = 2
 """So many statuses in a row with a low rate: the first one after a start counts from the run's beginning."""
 
@@ -40,7 +43,8 @@ def troubles(picture: Picture, now: float | None = None) -> dict[str, str]:
     absent, ailing = {}, {}
     for name, watched in picture.processes.items():
         status = watched.status
-        if words := _absence(watched, now):
+        words = clock_stands(picture, now) if name == "io" else ""
+        if words := words.removeprefix("io ") or _absence(watched, now):
             absent[name] = words
         elif status is not None:
             parts = [
@@ -62,6 +66,21 @@ def awaited(picture: Picture) -> str:
     return (match[1] or match[2]) if match else ""
 
 
+def clock_stands(picture: Picture, now: float | None = None) -> str:
+    """In words that simulated time stands still because io does, and not for another process; or empty.
+
+    Args:
+        picture: what has been heard.
+        now: monotonic clock [s]; the present if left out.
+    """
+    now = time.monotonic() if now is None else now
+    io = picture.processes["io"]
+    if not picture.simulated or io.status is None or min(now - io.heard, picture.stood_s(now)) < CLOCK_STANDS_S:
+        return ""
+    what = f"process {io.status.pid} stopped" + (f", or the link to {io.host} down" if io.host else "")
+    return f"io has not advanced the clock for {picture.stood_s(now):.1f} s: is {what}?"
+
+
 def worst_input(status: ProcessStatus) -> tuple[str, float, float] | None:
     """The input that is oldest for what its topic allows: its key, its age and that limit [s]."""
     ages = [
@@ -81,6 +100,8 @@ def _of_processes(picture: Picture, now: float) -> str:
     if all(watched.status is None for watched in processes.values()):
         out = next((f"{name} {watched.out}" for name, watched in processes.items() if watched.out), "")
         return out or "no process has spoken yet: io comes up first, it opens the bus"
+    if words := clock_stands(picture, now):
+        return words
     silent = [now - watched.heard for watched in processes.values() if watched.status is not None]
     if min(silent) > SILENT_S:
         return f"nothing on the bus for {min(silent):.0f} s: the link to it or the whole run stands still"

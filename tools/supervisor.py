@@ -7,9 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from surefoot.bus.endpoints import check_keys
-from surefoot.bus.session import refuse_second_hub
+from surefoot.bus.hub_socket import refuse_second_hub
 from surefoot.bus.topics import PROCESSES
 from surefoot.config.deployment import Deployment
+from surefoot.tools.diagnosis import clock_stands
 from surefoot.tools.end_signals import deaf
 from surefoot.tools.handovers import Handovers
 from surefoot.tools.launcher import Launcher, end_process
@@ -67,6 +68,7 @@ class Supervisor:
             settings.append(f"run.epoch_s={time.monotonic()!r}")
         self._sources, self._record = sources, record
         self._recorder: RecorderProcess | None = None
+        self._clock_stands = False
         self.picture = Picture(simulated=self._simulated)
         for name in PROCESSES:
             if name not in self._network.components_here:
@@ -191,6 +193,10 @@ class Supervisor:
     def _look(self, each: Callable[[Picture], None]) -> None:
         """Hear what is new, tell what this supervisor knows, show both."""
         self._desk.look()
+        words = clock_stands(self.picture)
+        if words and not self._clock_stands:
+            self.note(words)  # of a short pause nothing else would be left to read
+        self._clock_stands = words != ""
         each(self.picture)
 
     # Reconcile ------------------------------------------------------------------------------------------

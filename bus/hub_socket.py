@@ -1,0 +1,60 @@
+"""Where the hub of a namespace listens on this machine, and which process it is."""
+
+from __future__ import annotations
+
+import os
+import socket
+import tempfile
+from pathlib import Path
+
+from surefoot.bus.errors import BusError
+
+_CONNECT_S = 1.0
+
+
+def socket_path(namespace: str) -> Path:
+    """Where the bus of a namespace listens; one folder a user and namespace."""
+    return Path(tempfile.gettempdir()) / f"surefoot-{os.getuid()}" / f"{namespace}.sock"
+
+
+def hub_owner(namespace: str) -> str:
+    """In words the process that serves a namespace on this machine, also while it is stopped; empty: none does."""
+    path = socket_path(namespace)
+    with socket.socket(socket.AF_UNIX) as probe:
+        probe.settimeout(_CONNECT_S)
+        try:
+            probe.connect(str(path))
+        except (BlockingIOError, TimeoutError):
+            pass  # it has not accepted any for a while
+        except OSError:
+            return ""  # no socket, or one left by a process that is gone
+    owner = _owner_file(path)
+    return f"process {owner.read_text().strip()}" if owner.exists() else "a process"
+
+
+def refuse_second_hub(namespace: str) -> None:
+    """See that no hub serves a namespace yet.
+
+    Raises:
+        BusError: one does; says which process.
+    """
+    if owner := hub_owner(namespace):
+        raise BusError(f"{owner} already serves namespace {namespace!r}: stop it, or set another run.namespace")
+
+
+def take_socket(namespace: str) -> None:
+    """Make this process the one that serves a namespace: its folder is closed to other users.
+
+    Raises:
+        BusError: another process serves it.
+    """
+    path = socket_path(namespace)
+    path.parent.mkdir(mode=0o700, exist_ok=True)
+    refuse_second_hub(namespace)
+    path.unlink(missing_ok=True)  # left by a process that is gone
+    path.with_name(path.name + ".lock").unlink(missing_ok=True)
+    _owner_file(path).write_text(str(os.getpid()))
+
+
+def _owner_file(path: Path) -> Path:
+    return path.with_suffix(".pid")
