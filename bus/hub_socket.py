@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import socket
+import stat
 import tempfile
 from pathlib import Path
 
@@ -42,14 +43,33 @@ def refuse_second_hub(namespace: str) -> None:
         raise BusError(f"{owner} already serves namespace {namespace!r}: stop it, or set another run.namespace")
 
 
-def take_socket(namespace: str) -> None:
-    """Make this process the one that serves a namespace: its folder is closed to other users.
+def check_folder(namespace: str) -> None:
+    """See that nobody but this user may enter the socket's folder: that is all the trust there is on this machine.
 
     Raises:
-        BusError: another process serves it.
+        BusError: somebody else has made it, or it has been opened to others.
+    """
+    folder = socket_path(namespace).parent
+    if not os.path.lexists(folder):
+        return
+    found = folder.lstat()
+    mode = stat.S_IMODE(found.st_mode)
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or mode & 0o077:
+        raise BusError(
+            f"{folder} is not a folder of user {os.getuid()} alone (of user {found.st_uid}, mode {mode:04o}): "
+            "others could join the bus, or pass for it; remove it"
+        )
+
+
+def take_socket(namespace: str) -> None:
+    """Make this process the one that serves a namespace.
+
+    Raises:
+        BusError: another process serves it, or others may enter the socket's folder.
     """
     path = socket_path(namespace)
     path.parent.mkdir(mode=0o700, exist_ok=True)
+    check_folder(namespace)
     refuse_second_hub(namespace)
     path.unlink(missing_ok=True)  # left by a process that is gone
     path.with_name(path.name + ".lock").unlink(missing_ok=True)

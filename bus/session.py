@@ -14,7 +14,7 @@ import zenoh
 
 from surefoot.bus.endpoints import client_side, hub_side
 from surefoot.bus.errors import BusError
-from surefoot.bus.hub_socket import hub_owner, socket_path, take_socket
+from surefoot.bus.hub_socket import check_folder, hub_owner, socket_path, take_socket
 from surefoot.config.network import Network
 
 _CONNECT_MS = 30_000
@@ -66,8 +66,8 @@ class Session:
             network: of the deployment; None is one machine, closed to others.
 
         Raises:
-            BusError: no hub answers, another hub already runs under this namespace, or this machine's keys
-                cannot be used.
+            BusError: no hub answers, another hub already runs under this namespace, others may enter its socket's
+                folder, or this machine's keys cannot be used.
             ConfigError: the deployment has no way from this machine to the hub.
         """
         network = network or Network()
@@ -79,6 +79,7 @@ class Session:
             self.where, side = str(path), hub_side(network, namespace, local)
             take_socket(namespace)
         elif network.at_hub:
+            check_folder(namespace)
             self.where, side = str(path), {"connect": {"endpoints": [local]}}
         else:
             self.where, side = network.hub_endpoint, client_side(network)
