@@ -362,6 +362,7 @@ class ProcessStatus(Message):
     life: str = text("INIT, IDLE, ACTIVATING, RUN, DEACTIVATING or FAILED")
     reason: str = text("in words why nothing moves, or what failed; empty when all is well")
     pid: int = integer("of the operating system")
+    settings: str = text("digest of the settings that all processes of a run must have alike")
     steps: int = integer("steps since start")
     rate_hz: float = number("steps per second of the run's clock since the last status", "Hz", volatile=True)
     nominal_hz: float = number("steps per second it is to make; 0 when it steps on events", "Hz")

@@ -8,16 +8,13 @@ other process is its client. Multicast and gossip are off: nothing leaves the ma
 from __future__ import annotations
 
 import json
-import os
-import socket
-import tempfile
 from collections.abc import Callable
-from pathlib import Path
 
 import zenoh
 
 from surefoot.bus.endpoints import client_side, hub_side
 from surefoot.bus.errors import BusError
+from surefoot.bus.hub_socket import check_folder, hub_owner, socket_path, take_socket
 from surefoot.config.network import Network
 
 _CONNECT_MS = 30_000
@@ -31,11 +28,6 @@ _TX = {
         "congestion_control": {"drop": {"wait_before_drop": 0}},
     },
 }
-
-
-def socket_path(namespace: str) -> Path:
-    """Where the bus of a namespace listens; one folder a user and namespace."""
-    return Path(tempfile.gettempdir()) / f"surefoot-{os.getuid()}" / f"{namespace}.sock"
 
 
 class Marked(bytes):
@@ -54,6 +46,7 @@ class Session:
     Attributes:
         namespace: prefix of every key on the wire.
         where: the endpoint of the hub, for people.
+        beside_hub: the hub is on this machine.
         mark: what it publishes bears it; no other session has the same.
     """
 
@@ -73,18 +66,20 @@ class Session:
             network: of the deployment; None is one machine, closed to others.
 
         Raises:
-            BusError: no hub answers, another hub already runs under this namespace, or this machine's keys
-                cannot be used.
+            BusError: no hub answers, another hub already runs under this namespace, others may enter its socket's
+                folder, or this machine's keys cannot be used.
             ConfigError: the deployment has no way from this machine to the hub.
         """
         network = network or Network()
         self.namespace = self._prefix = namespace
+        self.beside_hub = network.at_hub
         path = socket_path(namespace)
         local = f"unixsock-stream/{path}"
         if hub:
             self.where, side = str(path), hub_side(network, namespace, local)
-            _make_room(path, namespace)
+            take_socket(namespace)
         elif network.at_hub:
+            check_folder(namespace)
             self.where, side = str(path), {"connect": {"endpoints": [local]}}
         else:
             self.where, side = network.hub_endpoint, client_side(network)
@@ -219,41 +214,13 @@ def _marked(sample: zenoh.Sample) -> Marked:
     return marked
 
 
-def refuse_second_hub(namespace: str) -> None:
-    """See that no hub serves a namespace yet.
-
-    Raises:
-        BusError: one does; says which process.
-    """
-    path = socket_path(namespace)
-    with socket.socket(socket.AF_UNIX) as probe:
-        try:
-            probe.connect(str(path))
-        except OSError:
-            return  # no socket, or one left by a process that is gone
-    owner = _owner_file(path)
-    who = f"process {owner.read_text().strip()}" if owner.exists() else "a process"
-    raise BusError(f"{who} already serves namespace {namespace!r}: stop it, or set another run.namespace")
-
-
-def _owner_file(path: Path) -> Path:
-    return path.with_suffix(".pid")
-
-
-def _make_room(path: Path, namespace: str) -> None:
-    """The socket's folder, closed to others; a socket file left by a process that is gone is removed."""
-    path.parent.mkdir(mode=0o700, exist_ok=True)
-    refuse_second_hub(namespace)
-    path.unlink(missing_ok=True)
-    path.with_name(path.name + ".lock").unlink(missing_ok=True)
-    _owner_file(path).write_text(str(os.getpid()))
-
-
 def _no_session(where: str, namespace: str, network: Network, hub: bool, error: str) -> str:
     """Why a session could not be opened, in words."""
     if hub:
         also = f" or {network.listen}: is the port taken, the address this machine's?" if network.listen else ""
         return f"cannot listen on {where}{also} ({error})"
+    if network.at_hub and (owner := hub_owner(namespace)):
+        return f"{owner} holds the bus on {where} and does not answer: is it stopped? ({error})"
     if network.at_hub:
         return f"nothing answers on {where}: is `surefoot run` running with namespace {namespace!r}? ({error})"
     return (

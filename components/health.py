@@ -15,6 +15,7 @@ from surefoot.bus.session import Session
 from surefoot.bus.topics import Process, nominal_hz
 from surefoot.components.component import Component, Inbox, Life
 from surefoot.components.topic_buffer import TopicBuffers
+from surefoot.config.shared_settings import settings_digest
 
 _PERIOD_S = 0.5
 
@@ -46,6 +47,7 @@ class Health:
         self._component, self._session, self._buffers, self.boot = component, session, buffers, boot
         self._journal = journal
         self._nominal_hz = nominal_hz(process)
+        self._settings = settings_digest(component.deployment)
         self._recent: deque[float] = deque(maxlen=2000)
         self._told, self._told_steps = time.monotonic(), 0
         self._seq = 0
@@ -75,6 +77,7 @@ class Health:
             life=self.life.value,
             reason=self._words(),
             pid=os.getpid(),
+            settings=self._settings,
             steps=self.steps,
             rate_hz=rate,
             nominal_hz=self._nominal_hz,

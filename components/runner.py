@@ -11,7 +11,7 @@ from surefoot.bus.session import Marked, Session
 from surefoot.bus.topics import nominal_hz, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
-from surefoot.components.deployment_desk import serve_deployment
+from surefoot.components.deployment_desk import check_settings, serve_deployment
 from surefoot.components.operator_desk import OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
@@ -56,9 +56,13 @@ class Runner:
         """Until the end; returns the exit code.
 
         Raises:
-            BusError, ForeignMemory: the process that is to be relieved does not answer, or is of other code.
+            BusError: io, on another machine, runs with other settings, or the process that is to be relieved does
+                not answer.
+            ForeignMemory: that one is of other code.
         """
         health = self._stepper.health
+        if not self._deployment.network.at_hub:
+            check_settings(self._session, self._deployment, self._name, lambda: self._end.due)
         self._stepper.component.warm_up()
         gc.collect()
         gc.freeze()

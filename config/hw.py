@@ -31,6 +31,7 @@ class Hw:
     friction_min: Annotated[float, Within(0.0, 2.0)] = 0.4  # coefficient of the ground, uniform between the two
     friction_max: Annotated[float, Within(0.0, 2.0)] = 0.8
     command_timeout_s: Annotated[float, Within(0.004, 1.0)] = 0.050  # older commands damp
+    latch_after_s: Annotated[float, Within(0.02, 10.0)] = 0.2  # damped so long, the gate awaits a person's command
     damping_kd: Annotated[float, Within(0.1, 20.0)] = 3.0  # joint damping of the safe state, DAMP [N m s/rad]
     kp_max: Annotated[float, Within(0.0, 2000.0)] = 500.0  # larger position gains are refused [N m/rad]
     kd_max: Annotated[float, Within(0.0, 100.0)] = 20.0  # larger velocity gains are refused [N m s/rad]

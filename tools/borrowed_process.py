@@ -12,8 +12,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from surefoot.bus.errors import BusError
+from surefoot.bus.hub_socket import hub_owner
 from surefoot.bus.service_keys import SUPERVISOR_REQUEST
-from surefoot.bus.session import Session, refuse_second_hub
+from surefoot.bus.session import Session
 from surefoot.tools.other_process import OtherProcess
 from surefoot.tools.supervisor_messages import ANSWER, NOTICE, Notice, unpack_answer, unpack_notice
 
@@ -29,11 +30,8 @@ def supervised_run(namespace: str) -> Notice | None:
     Raises:
         BusError: a hub serves the namespace and does not answer.
     """
-    try:
-        refuse_second_hub(namespace)
+    if not hub_owner(namespace):
         return None
-    except BusError:
-        pass  # there is a hub
     session = Session(namespace, connect_ms=_CONNECT_MS)
     try:
         said = session.ask(NOTICE)

@@ -13,6 +13,9 @@ from surefoot.tools.picture import Picture, Watched
 SILENT_S = 3.0
 """A process tells its status twice a second; one that has not for so long is stopped or hangs."""
 
+CLOCK_STANDS_S = 0.8
+"""With the simulated clock io says at least so often that it goes on, or for whom it waits."""
+
 _SLOW = 2
 """So many statuses in a row with a low rate: the first one after a start counts from the run's beginning."""
 
@@ -40,10 +43,15 @@ def troubles(picture: Picture, now: float | None = None) -> dict[str, str]:
     absent, ailing = {}, {}
     for name, watched in picture.processes.items():
         status = watched.status
-        if words := _absence(watched, now):
+        words = clock_stands(picture, now) if name == "io" else ""
+        if words := words.removeprefix("io ") or _absence(watched, now):
             absent[name] = words
         elif status is not None:
-            parts = [status.reason, *(f"{each} is too old" for each in _stale(status))]
+            parts = [
+                status.reason,
+                *(f"{each} is too old" for each in _stale(status)),
+                _estranged(picture, status),
+            ]
             if watched.slow >= _SLOW and not still:
                 parts.append(f"makes {status.rate_hz:.0f} of {status.nominal_hz:.0f} steps a second")
             if words := "; ".join(part for part in parts if part):
@@ -56,6 +64,21 @@ def awaited(picture: Picture) -> str:
     status = picture.processes["io"].status
     match = _AWAITED.search(status.reason) if status is not None else None
     return (match[1] or match[2]) if match else ""
+
+
+def clock_stands(picture: Picture, now: float | None = None) -> str:
+    """In words that simulated time stands still because io does, and not for another process; or empty.
+
+    Args:
+        picture: what has been heard.
+        now: monotonic clock [s]; the present if left out.
+    """
+    now = time.monotonic() if now is None else now
+    io = picture.processes["io"]
+    if not picture.simulated or io.status is None or min(now - io.heard, picture.stood_s(now)) < CLOCK_STANDS_S:
+        return ""
+    what = f"process {io.status.pid} stopped" + (f", or the link to {io.host} down" if io.host else "")
+    return f"io has not advanced the clock for {picture.stood_s(now):.1f} s: is {what}?"
 
 
 def worst_input(status: ProcessStatus) -> tuple[str, float, float] | None:
@@ -77,6 +100,8 @@ def _of_processes(picture: Picture, now: float) -> str:
     if all(watched.status is None for watched in processes.values()):
         out = next((f"{name} {watched.out}" for name, watched in processes.items() if watched.out), "")
         return out or "no process has spoken yet: io comes up first, it opens the bus"
+    if words := clock_stands(picture, now):
+        return words
     silent = [now - watched.heard for watched in processes.values() if watched.status is not None]
     if min(silent) > SILENT_S:
         return f"nothing on the bus for {min(silent):.0f} s: the link to it or the whole run stands still"
@@ -175,6 +200,14 @@ def _stale(status: ProcessStatus) -> list[str]:
         for key, age in zip(status.input, status.input_age_s, strict=False)
         if key in TOPICS and age > TOPICS[key].stale_after_s > 0.0
     ]
+
+
+def _estranged(picture: Picture, status: ProcessStatus) -> str:
+    """In words that a process runs with other settings than io; empty while both have the same."""
+    io = picture.processes["io"].status
+    if io is None or io.settings == status.settings:
+        return ""
+    return "runs with other settings than io"
 
 
 def _late(picture: Picture) -> str:

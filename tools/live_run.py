@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import signal
 import time
 from pathlib import Path
 
@@ -13,12 +12,13 @@ from rich.live import Live
 from surefoot.config.deployment import Deployment, load_deployment
 from surefoot.tools.commands.call import CallError
 from surefoot.tools.diagnosis import why_nothing_moves
+from surefoot.tools.end_signals import heed
 from surefoot.tools.picture import Picture
 from surefoot.tools.recording.recorder import check_space
 from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.solve_time import light_profile_reason
 from surefoot.tools.status_screen import TOLD, event_line, process_table, screen
-from surefoot.tools.supervisor import ENDS_RUN, Supervisor
+from surefoot.tools.supervisor import Supervisor
 from surefoot.tools.verdict import Verdict, verdict
 
 _LINE_S = 10.0
@@ -83,9 +83,7 @@ def live_run(
         return state.reason if state.over else ""
 
     console.print(f"{title}; logs in {deployment.run.log_dir}/; Ctrl-C ends the run")
-    for number in ENDS_RUN:
-        if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has it
-            signal.signal(number, signal.default_int_handler)
+    heed()
     try:
         if interactive:
             # The screen wraps long lines; the console that prints on leaves that to the terminal.

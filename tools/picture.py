@@ -52,6 +52,11 @@ class Watched:
         """
         return now - self.heard if self.status is not None else self.told_silent_s
 
+    def begin_anew(self) -> None:
+        """Another takes its place; nothing has been heard of that one."""
+        self.restarts += 1
+        self.status, self.out = None, ""
+
     @property
     def exit_code(self) -> int | None:
         """How it ended; None while it runs, or before it was started."""
@@ -90,6 +95,7 @@ class Picture:
     notes: list[str] = field(default_factory=list)
     ending: str = ""
     simulated: bool = False
+    _advanced: tuple[float, float] | None = None  # the run's time that io told last, and when here [s]
     _clock: deque[tuple[float, float]] = field(default_factory=deque)
     _first: tuple[float, float] | None = None
 
@@ -97,6 +103,11 @@ class Picture:
     def t(self) -> float:
         """Time of the run [s]."""
         return self.reference.t if self.reference is not None else 0.0
+
+    @property
+    def state(self) -> str:
+        """Of the state machine; empty before it has spoken."""
+        return self.reference.state if self.reference is not None else ""
 
     @property
     def restarts(self) -> int:
@@ -137,6 +148,8 @@ class Picture:
 
     def note_time(self) -> None:
         """Mark how far the run's clock has come by now."""
+        if self.hardware is not None and (self._advanced is None or self._advanced[0] != self.hardware.t):
+            self._advanced = self.hardware.t, time.monotonic()
         if self.reference is None:
             return
         now = time.monotonic(), self.t
@@ -145,6 +158,14 @@ class Picture:
         self._clock.append(now)
         while now[0] - self._clock[0][0] > _RECENT_S:
             self._clock.popleft()
+
+    def stood_s(self, now: float) -> float:
+        """How long io has not advanced the run's time, as far as it was heard; 0 before that has begun.
+
+        Args:
+            now: monotonic clock [s].
+        """
+        return now - self._advanced[1] if self._advanced is not None else 0.0
 
     def real_time_factor(self, recent: bool = False) -> float:
         """Seconds of the run for each second on the wall: over the last ten seconds, or since time began."""

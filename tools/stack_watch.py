@@ -11,6 +11,7 @@ from rich.console import Console, RenderableType
 from rich.live import Live
 
 from surefoot.bus.errors import BusError
+from surefoot.bus.hub_socket import hub_owner
 from surefoot.bus.session import Session
 from surefoot.bus.topics import TOPICS
 from surefoot.config.deployment import Deployment, load_deployment
@@ -23,7 +24,7 @@ from surefoot.tools.supervisor_messages import NOTICE, Notice, unpack_notice
 
 _LISTEN_S = 1.5  # three statuses of every process
 _DRAW_S = 0.25
-_GONE_S = 1.5  # after so long without a word the hub is looked for
+_GONE_S = 1.5  # after so long without a word the hub is looked for, and as often
 _RETRY_S = 0.5
 
 
@@ -48,7 +49,7 @@ class StackWatch:
         self._notice: Notice | None = None
         self._deployment: Deployment | None = None
         self._take_notice = self._session.newest(NOTICE)
-        self._begun = time.monotonic()
+        self._begun = self._served = time.monotonic()
 
     def look(self) -> None:
         """Take in what is new."""
@@ -60,8 +61,10 @@ class StackWatch:
             if first:
                 self._load(self._notice)
         heard = max(self._begun, *(watched.heard for watched in self.picture.processes.values()))
-        if time.monotonic() - heard > _GONE_S and not _served(self._connect):
-            self.ended = self.picture.ending or "io has ended and said no reason"
+        if time.monotonic() - max(heard, self._served) > _GONE_S and not self._is_served():
+            here = self._session.beside_hub
+            silent = "io has ended and said no reason" if here else f"{self.where} does not answer any more"
+            self.ended = self.picture.ending or silent
 
     def listen(self, seconds: float) -> None:
         """Look for so long, or until the stack ends."""
@@ -112,6 +115,15 @@ class StackWatch:
             "processes": {name: _row(watched, wrong.get(name, "")) for name, watched in picture.processes.items()},
         }
 
+    def _is_served(self) -> bool:
+        """Whether a hub listens; on this machine also one that is stopped."""
+        if self._session.beside_hub:
+            served = hub_owner(self.namespace) != ""
+        else:
+            served = _answers(self._connect)
+        self._served = time.monotonic()
+        return served
+
     def _load(self, notice: Notice) -> None:
         """The deployment, for the margin and the number of alternatives; the screen does without it too."""
         try:
@@ -119,6 +131,9 @@ class StackWatch:
         except ConfigError:
             return  # the file has changed since, or lies on another machine
         self.picture.simulated = self._deployment.run.clock == "simulated"
+        if not self._session.beside_hub:
+            for name, watched in self.picture.processes.items():
+                watched.host = self._deployment.network.host_of(name)
         self._observer.margin = SupportMargin(self._deployment.load_robot())
 
 
@@ -178,8 +193,8 @@ def _visit(connect: Callable[[], Session], wait: bool, console: Console) -> Stac
         time.sleep(_RETRY_S)
 
 
-def _served(connect: Callable[[], Session]) -> bool:
-    """Whether a hub listens."""
+def _answers(connect: Callable[[], Session]) -> bool:
+    """Whether there is a way to a hub."""
     try:
         connect().close()
     except BusError:
@@ -202,7 +217,7 @@ def _row(watched: Watched, trouble: str) -> dict[str, Any]:
         for key, age in zip(status.input, status.input_age_s, strict=False)
         if key in TOPICS
     ]
-    names = ("life", "reason", "pid", "boot", "steps", "rate_hz", "nominal_hz")
+    names = ("life", "reason", "pid", "boot", "settings", "steps", "rate_hz", "nominal_hz")
     figures = ("step_p50_ms", "step_p99_ms", "step_max_ms", "overruns", "bad_messages")
     silent = round(time.monotonic() - watched.heard, 2)
     return row | {name: getattr(status, name) for name in names + figures} | {"silent_s": silent, "inputs": inputs}

@@ -1,5 +1,6 @@
 """A process on the monotonic clock lets go of the robot before it leaves, unless another takes its place."""
 
+import json
 from dataclasses import astuple, replace
 
 import msgpack
@@ -19,6 +20,10 @@ from surefoot.components.relief import Place
 from surefoot.components.run_clock import AnotherRun
 from surefoot.components.wbc.wbc import Wbc
 from surefoot.config.deployment import Deployment, Run
+from surefoot.config.hw import Hw
+from surefoot.config.network import COMPONENTS, Network
+from surefoot.config.shared_settings import settings_digest
+from surefoot.config.typed_toml import to_table
 
 
 class Bus:
@@ -27,9 +32,10 @@ class Bus:
     Attributes:
         asks: what a successor asks as soon as it is listened for.
         place: where the predecessor stands, if there is one.
+        deployment: what io says it runs.
     """
 
-    asks, place = (), None
+    asks, place, deployment = (), None, None
 
     def __init__(self, *args, **kwargs):
         self.sent, self.open, self.heard = [], True, {}
@@ -47,6 +53,9 @@ class Bus:
         self.heard[key] = receive
         for word in self.asks if key.startswith("relief/ask/") else ():
             receive(key, word)
+
+    def ask(self, key):
+        return [json.dumps(to_table(self.deployment)).encode()]
 
     def serve_each(self, key, answer):
         pass
@@ -108,9 +117,10 @@ def process(monkeypatch):
     monkeypatch.setattr(runner, "ProcessEnd", Told)
     monkeypatch.setattr("surefoot.components.health._PERIOD_S", 0.0)
 
-    def make(kind, relieves=False, which="monotonic", **bus):
+    def make(kind, relieves=False, which="monotonic", network=None, **bus):
         monkeypatch.setattr(runner, "component_class", lambda name: kind)
-        made = runner.Runner(replace(Deployment(), run=Run(clock=which)), kind.name, relieves=relieves)
+        deployment = Deployment(run=Run(clock=which), network=network or Network())
+        made = runner.Runner(deployment, kind.name, relieves=relieves)
         vars(made._session).update(bus)
         return made
 
@@ -191,6 +201,27 @@ def test_a_successor_without_a_predecessor_gives_up(process, monkeypatch):
     with pytest.raises(BusError, match="fsm has not answered its successor"):
         fsm.run()
     assert fsm._stepper.component.ramped == 0
+
+
+HOSTS = {"robot": COMPONENTS[:3], "laptop": COMPONENTS[3:]}
+LAPTOP = Network(hosts=HOSTS, listen="tls/0.0.0.0:7448", address="10.0.0.1", host="laptop")
+ROBOT = Deployment(run=Run(clock="monotonic"), network=replace(LAPTOP, host="", keys_dir="elsewhere"))
+
+
+def test_one_on_another_machine_joins_with_the_settings_of_io_and_tells_them_by_a_digest(process, monkeypatch):
+    monkeypatch.setattr(runner, "run_clock", lambda *args: lambda: 1.0)
+    fsm = process(Ramp, network=LAPTOP, deployment=ROBOT)
+    assert fsm.run() == 0 and fsm._stepper.component.steps == 3
+    told = [decode(ProcessStatus, payload) for key, payload in fsm._session.sent if key == "status/fsm"]
+    assert {status.settings for status in told} == {settings_digest(ROBOT)}
+
+
+def test_with_others_it_does_nothing_and_names_them(process, monkeypatch):
+    monkeypatch.setattr(runner, "run_clock", lambda *args: lambda: 1.0)
+    fsm = process(Ramp, network=LAPTOP, deployment=replace(ROBOT, hw=Hw(seed=3)))
+    with pytest.raises(BusError, match=r"fsm has other settings than io: hw\.seed = 0, not 3; give every machine"):
+        fsm.run()
+    assert fsm._stepper.component.steps == 0 and fsm._session.sent == []
 
 
 class Counter(Component):

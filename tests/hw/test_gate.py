@@ -70,7 +70,56 @@ def test_an_angle_without_a_gain_is_not_worth_a_word(gate):
     assert not gate.damping and gate.reason == ""
 
 
-def test_it_recovers_with_the_next_good_command(gate):
-    gate.law(None, 0.0)
-    gate.law(GOOD, 1.0)
-    assert not gate.damping
+def at(t, **fields):
+    return dataclasses.replace(GOOD, t=t, **fields)
+
+
+NOTHING = np.zeros(12)
+DAMPING = {"kp": NOTHING, "tau": NOTHING, "solver": "ok"}
+
+
+def cycles(gate, t0, t1, make=lambda t: None):
+    """Every cycle from t0 to t1 [s], with the command that `make(t)` gives; whether the last one damped."""
+    for t in np.arange(t0, t1, 0.002):
+        gate.law(make(t), t)
+    return gate.damping
+
+
+def test_before_the_first_command_it_waits_as_long_as_it_takes(gate):
+    assert cycles(gate, 0.0, 1.0) and gate.reason == "no command yet"
+    assert not cycles(gate, 1.0, 1.1, at)
+
+
+def test_after_a_gap_that_the_posture_survives_it_goes_on_with_the_next_good_command(gate):
+    cycles(gate, 0.0, 0.1, at)
+    assert cycles(gate, 0.1, 0.29)
+    assert not cycles(gate, 0.29, 0.3, at) and gate.reason == ""
+
+
+@pytest.mark.parametrize(
+    ("gone", "said"),
+    [(lambda t: at(0.0), "command is 3"), (lambda t: at(t, valid=False), "does not vouch"), (None, "no command")],
+)
+def test_damped_for_longer_it_refuses_good_commands_and_says_why_and_what_to_do(gate, gone, said):
+    cycles(gate, 0.0, 0.1, at)
+    cycles(gate, 0.1, 0.32, gone or (lambda t: None))
+    assert cycles(gate, 0.32, 1.0, at)
+    assert gate.reason.startswith("damped too long to go on (") and said in gate.reason
+    assert "command sit, or damp, then stand" in gate.reason
+    assert not gate.law(at(1.0), 1.0).kp.any()
+
+
+def test_cycles_that_were_missed_count_as_damped(gate):
+    gate.law(at(0.0), 0.0)
+    gate.law(at(0.0), 0.3)
+    assert cycles(gate, 0.302, 0.4, at)
+
+
+def test_it_lets_go_when_the_controller_damps_because_it_is_told_to(gate):
+    cycles(gate, 0.0, 0.1, at)
+    cycles(gate, 0.1, 0.4)
+    assert cycles(gate, 0.4, 0.5, lambda t: at(t, **DAMPING | {"solver": "QP failed"}))
+    assert cycles(gate, 0.5, 0.6, lambda t: at(t, **DAMPING | {"dq": np.ones(12)}))
+    assert cycles(gate, 0.6, 0.7, at)
+    assert not cycles(gate, 0.7, 0.8, lambda t: at(t, **DAMPING))
+    assert not cycles(gate, 0.8, 0.9, at) and gate.reason == ""

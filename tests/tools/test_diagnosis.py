@@ -6,7 +6,7 @@ import pytest
 from surefoot.bus.messages import HardwareState, MotionReference, ProcessStatus
 from surefoot.bus.topics import PROCESSES, nominal_hz
 from surefoot.components.registry import component_class
-from surefoot.tools.diagnosis import awaited, troubles, why_nothing_moves, worst_input
+from surefoot.tools.diagnosis import awaited, clock_stands, troubles, why_nothing_moves, worst_input
 from surefoot.tools.picture import Picture
 from surefoot.tools.supervisor_messages import Notice, Post
 
@@ -101,6 +101,46 @@ def test_in_real_time_a_rate_that_stays_low_is_told_and_one_low_figure_is_not():
     assert troubles(picture, NOW) == {"mpc": "makes 32 of 100 steps a second"}
     say(picture, "mpc")
     assert troubles(picture, NOW) == {}
+
+
+def standing_clock(io_heard_s=0.9, stood_s=0.9):
+    """Simulated time that io advanced so long ago; so long ago it was heard."""
+    picture = walking()
+    picture.simulated = True
+    say(picture, "io", heard=NOW - io_heard_s, pid=4242)
+    picture.note_time()
+    picture._advanced = 5.0, NOW - stood_s
+    return picture
+
+
+def test_an_io_that_stands_still_is_named_with_its_process_before_a_second_has_passed():
+    words = "io has not advanced the clock for 0.9 s: is process 4242 stopped?"
+    assert why(standing_clock()) == clock_stands(standing_clock(), NOW) == words
+    assert troubles(standing_clock(), NOW) == {"io": words.removeprefix("io ")}
+    picture = standing_clock(4.0, 4.0)
+    for watched in picture.processes.values():
+        watched.heard = NOW - 4.0  # the bus goes through io
+    assert why(picture) == "io has not advanced the clock for 4.0 s: is process 4242 stopped?"
+    picture.processes["io"].host = "robot"
+    assert why(picture).endswith("is process 4242 stopped, or the link to robot down?")
+
+
+def test_a_clock_that_goes_on_or_waits_for_another_process_is_no_fault_of_io():
+    assert clock_stands(standing_clock(io_heard_s=0.3), NOW) == ""
+    assert clock_stands(standing_clock(stood_s=0.1), NOW) == ""
+    assert clock_stands(Picture(simulated=True), NOW) == ""
+    real_time = standing_clock()
+    real_time.simulated = False
+    assert clock_stands(real_time, NOW) == ""
+
+
+def test_a_process_that_runs_with_other_settings_than_io_is_named():
+    picture = walking()
+    for name in PROCESSES:
+        say(picture, name, settings="0a1b2c3d")
+    assert troubles(picture, NOW) == {}
+    say(picture, "mpc", settings="ffffffff")
+    assert troubles(picture, NOW) == {"mpc": "runs with other settings than io"}
 
 
 def test_a_silent_hub_and_a_silent_bus_are_two_things():

@@ -1,17 +1,23 @@
 """Which process may be restarted or lent when, and that a stop is carried through."""
 
+import json
 import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
+from surefoot.bus.errors import BusError
 from surefoot.bus.messages import MotionReference, ProcessStatus
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
 from surefoot.config.deployment import Deployment, Run
+from surefoot.config.hw import Hw
 from surefoot.config.network import Network
+from surefoot.config.typed_toml import to_table
+from surefoot.tools import launcher, lending, supervisor_desk
 from surefoot.tools import supervisor as supervisor_module
 from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.supervisor import Supervisor
@@ -42,6 +48,7 @@ class Fake(Supervisor):
     def __init__(self, *args):
         super().__init__(*args)
         self.launched = []
+        self._launcher.launch = self._launch
         for watched in self.picture.processes.values():
             watched.popen = Child()
 
@@ -101,7 +108,7 @@ def test_in_real_time_a_successor_is_ready_before_its_predecessor_leaves(restart
 
 def test_a_process_goes_on_if_its_successor_fails(restart):
     supervisor = restart("wbc", "STAND")
-    supervisor._successors["wbc"].code = 1
+    supervisor._handovers._successors["wbc"].code = 1
     watched = supervisor.picture.processes["wbc"]
     assert supervisor._reconcile() == "" and watched.exit_code is None and watched.restarts == 0
     assert "wbc goes on as it was: its successor failed; wbc ended with exit code 1" in supervisor.notes[-1]
@@ -111,7 +118,7 @@ def test_a_process_goes_on_if_its_successor_fails(restart):
 def test_what_the_robot_can_be_without_is_then_started_anew(restart, name, state):
     supervisor = restart(name, state)
     before = supervisor.picture.processes[name].popen
-    supervisor._successors[name].code = 1
+    supervisor._handovers._successors[name].code = 1
     assert supervisor._reconcile() == "" and before.code == 0
     assert supervisor.launched[1:] == [(name, 1)]
     assert f"{name} restarted on request, without its memory" in supervisor.notes[-1]
@@ -120,7 +127,7 @@ def test_what_the_robot_can_be_without_is_then_started_anew(restart, name, state
 def test_a_stop_ends_a_successor_too(restart):
     supervisor = restart("mpc", "STAND")
     supervisor.stop()
-    assert supervisor._successors["mpc"].code == 0
+    assert supervisor._handovers._successors["mpc"].code == 0
 
 
 def test_in_simulation_everything_but_io_is(restart):
@@ -145,7 +152,7 @@ def test_a_stop_is_carried_through_whoever_presses_ctrl_c_again(tmp_path, monkey
         os.kill(os.getpid(), signal.SIGHUP)
         ended.append(names[popen])
 
-    monkeypatch.setattr("surefoot.tools.supervisor._end", end)
+    monkeypatch.setattr(supervisor_module, "end_process", end)
     before = signal.getsignal(signal.SIGINT)
     supervisor.stop()
     assert sorted(ended) == sorted(PROCESSES) and ended[-1] == "io"
@@ -179,7 +186,7 @@ def test_one_that_is_stopped_still_ends_in_order(tmp_path, sleeper):
 
 
 def test_one_that_hangs_is_killed_in_its_time(tmp_path, sleeper, monkeypatch):
-    monkeypatch.setattr(supervisor_module, "KILL_AFTER_S", 0.2)
+    monkeypatch.setattr(launcher, "KILL_AFTER_S", 0.2)
     supervisor = Supervisor(tmp_path / "flat.toml", [], Deployment())
     for name in ("mpc", "io"):
         supervisor.picture.processes[name].popen = sleeper("signal.signal(signal.SIGTERM, signal.SIG_IGN)")
@@ -188,28 +195,19 @@ def test_one_that_hangs_is_killed_in_its_time(tmp_path, sleeper, monkeypatch):
 
 
 class Desk:
-    """A supervisor that starts nothing; what it would have started, commanded and answered."""
+    """A supervisor that starts nothing; what it would have started and answered."""
 
     def __init__(self, tmp_path, clock="simulated", sources=None):
         deployment = Deployment(run=Run(clock=clock, log_dir=str(tmp_path)))
         self.supervisor = Supervisor(tmp_path / "flat.toml", [], deployment, sources)
         self.done, self.answers = [], []
-        self.supervisor._command = self.done.append
-        self.supervisor._answer = lambda pid, answer: self.answers.append((pid, answer))
-        start = self.supervisor._start
-
-        def only_grant(name):
-            if self.supervisor.picture.processes[name].lent_to:
-                start(name)
-            else:
-                self.done.append(name)
-
-        self.supervisor._start = only_grant
+        self.supervisor._start = lambda watched: self.done.append(watched.name)
+        self.supervisor._lending._answer = lambda pid, answer: self.answers.append((pid, answer))
         self.picture = self.supervisor.picture
 
     def ask(self, *requests):
         for request in requests:
-            self.supervisor._requests.put(request)
+            self.supervisor._desk.ask(request)
         return self.supervisor._reconcile()
 
     @property
@@ -261,7 +259,7 @@ def test_io_and_in_real_time_what_holds_the_robot_are_not_lent(tmp_path, sleeper
 
 
 def test_a_lent_process_is_told_to_end_with_the_run_and_not_killed(tmp_path, sleeper, monkeypatch):
-    monkeypatch.setattr(supervisor_module, "KILL_AFTER_S", 0.2)
+    monkeypatch.setattr(lending, "KILL_AFTER_S", 0.2)
     desk = Desk(tmp_path)
     good, at_a_prompt = sleeper(), sleeper("signal.signal(signal.SIGTERM, signal.SIG_IGN)")
     desk.ask(f"lend wbc {good.pid}", f"lend mpc {at_a_prompt.pid}")
@@ -321,10 +319,13 @@ HOSTS = {"robot": ("io", "estimator", "wbc", "fsm"), "laptop": ("mpc", "trajopt"
 
 
 class Bus:
-    """In place of the session."""
+    """In place of the session, to an io that runs a deployment."""
 
-    def __init__(self, *args, **kwargs):
-        self.said = []
+    def __init__(self, deployment):
+        self.said, self._deployment = [], deployment
+
+    def ask(self, key):
+        return [json.dumps(to_table(self._deployment)).encode()]
 
     def newest(self, key):
         return lambda: None
@@ -343,20 +344,40 @@ class Bus:
         pass
 
 
+@pytest.fixture
+def machine(tmp_path, monkeypatch):
+    """Makes the supervisor of a machine; what it starts, and its bus."""
+
+    def make(host, clock="simulated", seed_of_io=0):
+        network = Network(hosts=HOSTS, listen="tls/0.0.0.0:7448", address="10.0.0.1", host=host)
+        run = Run(clock=clock, log_dir=str(tmp_path), namespace="nobody", command="stand")
+        deployment = Deployment(run=run, network=network)
+        (tmp_path / "flat.toml").touch()
+        supervisor = Supervisor(tmp_path / "flat.toml", [], deployment)
+        started, bus = [], Bus(replace(deployment, hw=Hw(seed=seed_of_io)))
+        monkeypatch.setattr(supervisor_module, "check_keys", lambda network: None)
+        monkeypatch.setattr(supervisor, "_start", lambda watched: started.append(watched.name))
+        monkeypatch.setattr(supervisor_desk, "Session", lambda *args, **kwargs: bus)
+        monkeypatch.setattr(supervisor, "_await_io", lambda each: None)
+        supervisor.picture.processes["fsm"].status = ProcessStatus(process="fsm")
+        return supervisor, started, bus
+
+    return make
+
+
+def test_a_machine_with_other_settings_than_ios_starts_nothing(machine):
+    supervisor, started, _ = machine("laptop", seed_of_io=3)
+    with pytest.raises(
+        BusError, match=r"laptop has other settings than io: hw\.seed = 0, not 3; give every machine"
+    ):
+        supervisor.run(lambda picture: "enough")
+    assert started == []
+
+
 @pytest.mark.parametrize("clock", ["simulated", "monotonic"])
 @pytest.mark.parametrize("host", ["robot", "laptop"])
-def test_each_machine_starts_its_own_processes_and_that_of_io_gives_the_command(
-    tmp_path, monkeypatch, host, clock
-):
-    network = Network(hosts=HOSTS, listen="tls/0.0.0.0:7448", address="10.0.0.1", host=host)
-    run = Run(clock=clock, log_dir=str(tmp_path), namespace="nobody", command="stand")
-    supervisor = Supervisor(tmp_path / "flat.toml", [], Deployment(run=run, network=network))
-    started, bus = [], Bus()
-    monkeypatch.setattr(supervisor_module, "check_keys", lambda network: None)
-    monkeypatch.setattr(supervisor, "_start", started.append)
-    monkeypatch.setattr(supervisor, "_connect", lambda: bus)
-    monkeypatch.setattr(supervisor, "_await_io", lambda each: None)
-    supervisor.picture.processes["fsm"].status = ProcessStatus(process="fsm")
+def test_each_machine_starts_its_own_processes_and_that_of_io_gives_the_command(machine, host, clock):
+    supervisor, started, bus = machine(host, clock)
     assert supervisor.run(lambda picture: "enough") == "enough"
     assert started == list(HOSTS[host])
     assert [payload for _, payload in bus.said] == ([b"stand"] if host == "robot" else [])

@@ -27,6 +27,8 @@ _TILT = 0.5  # more than the state machine lets pass for standing or lying [rad]
 _SAID = {"kill": "{} ended with", "restart": "restart", "pause": "simulated time waits"}
 """What is said, of which process, after a fault with simulated time."""
 
+_PAUSED_IO = "io has not advanced the clock"
+
 _NO_WALK = 'run.command="stand"'
 
 Say = Callable[[str], None]
@@ -110,9 +112,10 @@ class Drill:
             stood = f"back after {time.monotonic() - begun:.1f} s"
         go_on = run.t + _GO_ON_S
         run.wait(lambda: run.t > go_on, "time to go on")
+        about = _PAUSED_IO if case.fault == "pause" and name in ("io", "all") else _SAID[case.fault].format(name)
         if case.fault != "pause":
-            run.wait(lambda: bool(run.words(_SAID[case.fault].format(name), mark)), "a word of the supervisor")
-        return _Done(case, t, stood, run.words(_SAID[case.fault].format(name), mark), _stands(run))
+            run.wait(lambda: bool(run.words(about, mark)), "a word of the supervisor")
+        return _Done(case, t, stood, run.words(about, mark), _stands(run))
 
     # Monotonic clock ------------------------------------------------------------------------------------
 
