@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from surefoot.components.lockstep import Lockstep
+from surefoot.components.memory import ForeignMemory
 from surefoot.config.deployment import load_deployment
 from surefoot.tools.recording.clip import REMEMBER, cut
 from surefoot.tools.recording.lockstep_recording import LockstepRecording
@@ -63,11 +64,16 @@ def update(name, folder):
     scene, clip = SCENES[name], path(name)
     changed = ["new"]
     if clip.exists():
-        topics = replay(clip, REMEMBER).comparison.topics
-        changed = [
-            f"{key}: {topic.differing} differ, first {topic.first}"
-            for key, topic in topics.items()
-            if not topic.equal
-        ]
+        changed = _changed(clip)
     cut(record(scene.settings, folder), clip, scene.from_t, scene.until_t, digests=DIGESTS)
     return f"{name}, {clip.stat().st_size / 1e6:.2f} MB: {'; '.join(changed) or 'nothing has changed'}"
+
+
+def _changed(clip):
+    try:
+        topics = replay(clip, REMEMBER).comparison.topics
+    except ForeignMemory as error:
+        return [f"not to be compared: {error}"]
+    return [
+        f"{key}: {topic.differing} differ, first {topic.first}" for key, topic in topics.items() if not topic.equal
+    ]
