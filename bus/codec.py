@@ -5,6 +5,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Callable
 from functools import cache
+from math import isfinite
 from typing import Any, NoReturn, TypeVar
 
 import msgpack
@@ -105,8 +106,12 @@ def check(message: M) -> M:
     for name, spec, dtype in _plan(type(message)):
         value = getattr(message, name)
         if dtype is not None:
-            _check_shape(type(message), name, spec, np.shape(value))
-        if spec.finite and spec.kind in ("array", "number") and not np.isfinite(value).all():
+            # Compared whole first: a message is checked at every publication, and this is what it costs.
+            if getattr(value, "shape", None) != spec.shape:
+                _check_shape(type(message), name, spec, np.shape(value))
+            if spec.finite and not np.isfinite(value).all():
+                _refuse_not_finite(type(message), name, value)
+        elif spec.finite and spec.kind == "number" and not isfinite(value):
             _refuse_not_finite(type(message), name, value)
     return message
 
