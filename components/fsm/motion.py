@@ -67,12 +67,14 @@ class Motion:
     @property
     def bearing(self) -> np.ndarray:
         """(4,) feet that stand on ground not known to give way."""
-        return np.isin(self.reference.leg_status, (LegStatus.STANCE, LegStatus.PROBING))
+        status = self.reference.leg_status
+        return (status == LegStatus.STANCE) | (status == LegStatus.PROBING)
 
     @property
     def in_air(self) -> bool:
         """A leg swings, or looks for the ground."""
-        return bool(np.isin(self.reference.leg_status, (LegStatus.SWING, LegStatus.LANDING)).any())
+        status = self.reference.leg_status.tolist()
+        return LegStatus.SWING in status or LegStatus.LANDING in status
 
     def trust(self, leg: int) -> None:
         """The ground under a foot has borne its load."""

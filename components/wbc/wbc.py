@@ -114,7 +114,8 @@ class Wbc(Component):
         q = np.concatenate([estimate.p_WB, [x, y, z, w], estimate.q])
         v = np.concatenate([R.T @ estimate.v_WB_W, estimate.omega_WB_B, estimate.dq])
         qp.update(q, v)
-        trusted = np.isin(reference.leg_status, (LegStatus.STANCE, LegStatus.PROBING, LegStatus.COLLAPSING))
+        status = reference.leg_status
+        trusted = (status == LegStatus.STANCE) | (status == LegStatus.PROBING) | (status == LegStatus.COLLAPSING)
         # Nobody else will tell when a foot that is on its way down has landed.
         stance = trusted | (orphaned & (t > reference.swing_t1) & estimate.contact)
         target = self._target.at(t, policy, estimate.p_WB, R, stance)
