@@ -1,0 +1,45 @@
+"""Settings of the real Aliengo: where it answers, what its packets mean, and what is plausible in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+from surefoot.config.typed_toml import Within, ordered
+
+Celsius = Annotated[float, Within(-128.0, 200.0)]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a state packet means where the vendor's files leave it open."""
+
+    level_flag: Literal["low", "any"] = "low"  # any: a firmware that leaves it 0, as the vendor's SDK lets pass
+    g0_quaternion: Literal["wxyz", "xyzw"] = "wxyz"  # generation G0 does not state its order; G1 is w, x, y, z
+    accelerometer: Literal["up", "down"] = "up"  # what z reads at rest: up +9.8 (specific force), down -9.8
+
+
+@dataclass(frozen=True)
+class Plausible:
+    """Beyond these figures a packet is garbage; generous, since the gate knows the limits that count."""
+
+    angle_margin: Annotated[float, Within(0.0, 20.0)] = 1.0  # beyond the robot's joint ranges [rad]
+    joint_speed: Annotated[float, Within(20.0, 1000.0)] = 60.0  # three times what a motor makes [rad/s]
+    torque: Annotated[float, Within(45.0, 1000.0)] = 120.0  # the packet of generation G1 ends at 128 [N m]
+    angular_velocity: Annotated[float, Within(5.0, 200.0)] = 40.0  # gyroscopes end at 2000 deg/s [rad/s]
+    acceleration: Annotated[float, Within(20.0, 2000.0)] = 300.0  # per axis; sensors end at 16 g [m/s^2]
+    temperature_min: Celsius = -50.0  # motors and IMU [deg C]
+    temperature_max: Celsius = 125.0
+    quaternion_norm_error: Annotated[float, Within(1e-4, 1.0)] = 0.05  # of the norm, from 1
+
+    def __post_init__(self) -> None:
+        ordered(self, "temperature_min", "temperature_max", "no temperature would be plausible")
+
+
+@dataclass(frozen=True)
+class Aliengo:
+    """The real robot's packets."""
+
+    generation: Literal["G0", "G1"] = "G1"  # G0: only the oldest, which answer with 684 bytes instead of 771
+    reading: Reading = field(default_factory=Reading)
+    plausible: Plausible = field(default_factory=Plausible)
