@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from surefoot.config.typed_toml import Within, ordered
+from surefoot.config.typed_toml import ConfigError, Within, ordered
 
 Celsius = Annotated[float, Within(-128.0, 200.0)]
 
@@ -38,8 +38,20 @@ class Plausible:
 
 @dataclass(frozen=True)
 class Aliengo:
-    """The real robot's packets."""
+    """The real robot on its wire. The PC needs a fixed address in its network, such as 192.168.123.162/24."""
 
     generation: Literal["G0", "G1"] = "G1"  # G0: only the oldest, which answer with 684 bytes instead of 771
+    address: str = "192.168.123.10"  # of the control board
+    port: Annotated[int, Within(1, 65535)] = 8007  # of its low level
+    local_port: Annotated[int, Within(0, 65535)] = 8082  # as in the vendor's examples, G0's have 8008; 0: any
+    damping: Literal["gain", "brake"] = "gain"  # the safe state: hw.damping_kd alone, or the motors' brake mode
+    law_timeout_s: Annotated[float, Within(0.004, 1.0)] = 0.020  # an older law is not sent any more: damping
+    stale_s: Annotated[float, Within(0.004, 1.0)] = 0.050  # an older state is a fault
+    first_answer_s: Annotated[float, Within(0.05, 60.0)] = 3.0  # how long the first good state is awaited
+    tick_unit: Literal["auto", "us", "ms", "none"] = "auto"  # the vendor says both; none: time by arrival
     reading: Reading = field(default_factory=Reading)
     plausible: Plausible = field(default_factory=Plausible)
+
+    def __post_init__(self) -> None:
+        if not self.address.strip():
+            raise ConfigError("address is empty: give the robot's, such as 192.168.123.10")
