@@ -10,15 +10,15 @@ from time import monotonic, sleep
 from surefoot.bus.topics import CYCLE_HZ
 from surefoot.config.aliengo import Aliengo
 from surefoot.config.robot import Robot
-from surefoot.hw.aliengo.command_packet import encode_brake, encode_command
+from surefoot.hw.aliengo.complaint import complaint
 from surefoot.hw.aliengo.deadlines import Deadlines
-from surefoot.hw.aliengo.generation import GENERATIONS
+from surefoot.hw.aliengo.law_encoder import LawEncoder
 from surefoot.hw.aliengo.link import Link
 from surefoot.hw.aliengo.link_statistics import LinkRecorder, LinkStatistics
 from surefoot.hw.aliengo.plausibility import Plausibility
 from surefoot.hw.aliengo.state_feed import StateFeed, TimedState
 from surefoot.hw.errors import HardwareFault, PacketError
-from surefoot.hw.robot_interface import DepthImage, MotorLaw, Sensors, damping_law
+from surefoot.hw.robot_interface import DepthImage, MotorLaw, Sensors
 
 _PERIOD_S = 1.0 / CYCLE_HZ
 _PATIENCE_S = 10 * _PERIOD_S  # after a stall of this machine the robot answers again before it counts as silent
@@ -31,9 +31,6 @@ class AliengoDriver:
     The robot speaks only when spoken to, and what it does when commands stop is not documented: so one is sent in
     every cycle. It is the newest motor law; it damps when the last cycle of the caller brought no law, when the
     law is older than `law_timeout_s`, and at the end.
-
-    Attributes:
-        limited: in words what of the last written law did not fit the packet; empty when all did.
     """
 
     def __init__(self, robot: Robot, settings: Aliengo, damping_kd: float):
@@ -48,17 +45,13 @@ class AliengoDriver:
             HardwareFault: there is no way to the robot, or it does not answer.
         """
         self._settings = settings
-        self._generation = GENERATIONS[settings.generation]
-        self._plausibility = Plausibility(robot, settings.plausible)
-        if settings.damping == "brake":
-            self._damp = encode_brake(self._generation)
-        else:
-            self._damp, _ = encode_command(damping_law(damping_kd), self._generation, self._plausibility)
+        plausibility = Plausibility(robot, settings.plausible)
+        self._encoder = LawEncoder(settings, plausibility, damping_kd)
+        self._damp = self._encoder.damp
         self._order = (self._damp, inf)  # a packet, and until when it may be sent
         self._written = False
-        self.limited: tuple[str, ...] = ()
         self._recorder = LinkRecorder()
-        self._feed = StateFeed(settings, self._plausibility, self._recorder)
+        self._feed = StateFeed(settings, plausibility, self._recorder)
         self._news = Condition()
         self._ending = Event()
         self._link = Link(settings, self._recorder)
@@ -90,9 +83,13 @@ class AliengoDriver:
         """As of `TickClock`: "us", "ms", "none", or "" while it is being found out."""
         return self._feed.clock.unit
 
+    @property
+    def trouble(self) -> str:
+        """What of the last law did not fit the packet; what was last amiss on the link."""
+        return "; ".join(words for words in (*self._encoder.limited, self._recorder.trouble) if words)
+
     def read(self) -> Sensors:
-        state = self.newest.state
-        return Sensors(q=state.q, dq=state.dq, tau=state.tau, omega_WB_B=state.omega_WB_B, acc_B=state.acc_B)
+        return self.newest.sensors
 
     def depth(self) -> DepthImage | None:
         """None: the robot has no camera on this link."""
@@ -105,7 +102,7 @@ class AliengoDriver:
             PacketError: no robot could follow it; the motors damp.
         """
         try:
-            packet, self.limited = encode_command(law, self._generation, self._plausibility)
+            packet = self._encoder.packet(law)
         except PacketError:
             self._order = (self._damp, inf)
             raise
@@ -166,16 +163,5 @@ class AliengoDriver:
             raise HardwareFault(self._complaint())
 
     def _complaint(self) -> str:
-        settings, found, newest = self._settings, self.statistics, self._feed.newest
-        where = f"{settings.address}:{settings.port}"
-        if newest is None:
-            what = f"{where} has sent no good state in {settings.first_answer_s:g} s and {found.commands} commands"
-        else:
-            age_ms, limit_ms = 1e3 * (monotonic() - newest.t), 1e3 * settings.stale_s
-            what = f"the newest state of {where} is {age_ms:.0f} ms old by its tick, limit {limit_ms:.0f} ms"
-        seen = (
-            f"{found.states} states, {found.duplicates} repeats, {found.old} old ticks, {found.checksum_errors} "
-            f"checksum errors, {found.refused} refused, {found.socket_errors} socket errors"
-        )
-        trouble = f"; {found.trouble}" if found.trouble else ""
-        return f"{what} ({seen}{trouble}): is it on, in low-level mode, its tick moving, and the cable in?"
+        newest = self._feed.newest
+        return complaint(self._settings, self.statistics, None if newest is None else monotonic() - newest.t)

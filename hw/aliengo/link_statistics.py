@@ -76,6 +76,11 @@ class LinkRecorder:
             self._counts.update(commands=1, overruns=overruns)
             self._answers.append(None if answered is None else (answered, answered - sent))
 
+    @property
+    def trouble(self) -> str:
+        """As of the statistics."""
+        return self._trouble
+
     def statistics(self) -> LinkStatistics:
         with self._lock:
             counts, answers, trouble = dict(self._counts), list(self._answers), self._trouble

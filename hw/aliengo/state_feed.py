@@ -13,6 +13,7 @@ from surefoot.hw.aliengo.plausibility import Plausibility
 from surefoot.hw.aliengo.state_packet import decode_state
 from surefoot.hw.aliengo.tick_clock import TickClock
 from surefoot.hw.errors import PacketError
+from surefoot.hw.robot_interface import Sensors
 
 
 @dataclass(frozen=True)
@@ -21,6 +22,14 @@ class TimedState:
 
     t: float
     state: AliengoState
+
+    @property
+    def sensors(self) -> Sensors:
+        """What of it every robot has."""
+        state = self.state
+        return Sensors(
+            q=state.q, dq=state.dq, tau=state.tau, omega_WB_B=state.omega_WB_B, acc_B=state.acc_B, t=self.t
+        )
 
 
 class StateFeed:

@@ -61,6 +61,11 @@ class MujocoRobot:
         """Simulated time [s]."""
         return self._step * PHYSICS_DT
 
+    @property
+    def trouble(self) -> str:
+        """Nothing ever is."""
+        return ""
+
     def read(self) -> Sensors:
         data, settings = self.data, self._settings
         if not np.isfinite(data.qpos).all():

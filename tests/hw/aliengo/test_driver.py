@@ -98,10 +98,10 @@ def test_a_law_that_no_robot_could_follow_damps_and_is_named():
 def test_what_of_a_law_does_not_fit_is_said():
     with UdpRobot() as robot, driver_of(robot) as driver:
         driver.write(replace(GOOD_LAW, tau=np.full(12, 130.0)))
-        assert len(driver.limited) == 12 and "law.tau of FR_hip = 130" in driver.limited[0]
+        assert driver.trouble.count("does not fit") == 12 and "law.tau of FR_hip = 130" in driver.trouble
         robot.hears(lambda command: (command.law.tau == 32767 / 256).all())
         driver.write(GOOD_LAW)
-        assert driver.limited == ()
+        assert driver.trouble == ""
 
 
 def test_what_the_robot_tells_next_is_read_next():
