@@ -7,6 +7,9 @@ from typing import Annotated, Literal
 
 from surefoot.config.typed_toml import ConfigError, Within, ordered
 
+LOOPBACK = ("127.0.0.1", "localhost")
+"""This machine: what answers there is an emulator."""
+
 Celsius = Annotated[float, Within(-128.0, 200.0)]
 
 
@@ -49,9 +52,15 @@ class Aliengo:
     stale_s: Annotated[float, Within(0.004, 1.0)] = 0.050  # an older state is a fault
     first_answer_s: Annotated[float, Within(0.05, 60.0)] = 3.0  # how long the first good state is awaited
     tick_unit: Literal["auto", "us", "ms", "none"] = "auto"  # the vendor says both; none: time by arrival
+    exchange: Literal["timer", "cycle"] = "timer"  # cycle: with each step of io, for an emulator that waits
     reading: Reading = field(default_factory=Reading)
     plausible: Plausible = field(default_factory=Plausible)
 
     def __post_init__(self) -> None:
         if not self.address.strip():
             raise ConfigError("address is empty: give the robot's, such as 192.168.123.10")
+        if self.exchange == "cycle" and self.address not in LOOPBACK:
+            raise ConfigError(
+                f"exchange = 'cycle' with address = {self.address!r}: a robot would be without commands while io "
+                f"waits; 'timer', or an emulator on this machine ({' or '.join(LOOPBACK)})"
+            )

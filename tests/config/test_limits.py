@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 import surefoot.config.deployment as deployment_module
-from surefoot.config.aliengo import Aliengo
 from surefoot.config.deployment import Deployment, load_deployment
 from surefoot.config.robot import Robot, load_robot
 from surefoot.config.typed_toml import ConfigError, Within, build, to_table, with_override
@@ -51,7 +50,7 @@ def table_of(assignments):
     return table
 
 
-@pytest.mark.parametrize("cls", [Deployment, Robot, Aliengo])
+@pytest.mark.parametrize("cls", [Deployment, Robot])
 def test_every_number_has_two_finite_limits(cls):
     found = list(numbers(cls, ""))
     bare = [path for path, limits in found if not isinstance(limits, Within)]
@@ -264,6 +263,12 @@ TOGETHER = {
     "network.listen=tcp/127.0.0.1:7448": r"tcp lets everyone in; use tls and `surefoot keys init`, or insecure",
     "network.insecure=true network.listen=tcp/0.0.0.0:7448": r"without keys only 127\.0\.0\.1 may listen; use tls",
     "network.address=tls/10.0.0.1:7448": r"address = 'tls/10\.0\.0\.1:7448': a host name or an IP address",
+    "hw.backend=aliengo": r"^run\.clock = 'simulated' with hw\.aliengo\.exchange = 'timer': .* set 'monotonic'",
+    "hw.backend=aliengo run.clock=monotonic hw.aliengo.exchange=cycle hw.aliengo.address=127.0.0.1": (
+        r"^run\.clock = 'monotonic' with hw\.aliengo\.exchange = 'cycle': .* 'simulated' and 'cycle'"
+    ),
+    "hw.backend=aliengo run.clock=monotonic run.vision=true": r"^run\.vision = true .* set run\.vision = false",
+    "hw.aliengo.exchange=cycle": r"^hw\.aliengo: exchange = 'cycle' with address = '192\.168\.123\.10': .*'timer'",
     "robot=spot": r"^robot 'spot' is not described; known: aliengo",
 }
 
@@ -289,6 +294,8 @@ def test_values_that_do_not_go_together_are_named(assignments, said):
         "network.listen=tls/[::]:7448 network.address=fe80::1",
         f"network.hosts={{robot={ALL},pc=[]}} network.listen=tls/0.0.0.0:1 network.address=a network.host=pc",
         "mpc.profile=light mpc.interval_s=0.02 mpc.intervals=50",
+        "hw.backend=aliengo run.clock=monotonic hw.aliengo.generation=G0 hw.aliengo.local_port=8008",
+        "hw.backend=aliengo hw.aliengo.exchange=cycle hw.aliengo.address=127.0.0.1",
     ],
 )
 def test_what_a_researcher_may_try_is_let_through(assignments):
