@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from surefoot.config.elevation_map import ElevationMap
+from surefoot.config.emulator import Emulator
 from surefoot.config.estimator import Estimator
 from surefoot.config.fsm import Fsm
 from surefoot.config.hw import Hw
@@ -57,6 +58,7 @@ class Deployment:
     wbc: Wbc = field(default_factory=Wbc)
     fsm: Fsm = field(default_factory=Fsm)
     elevation_map: ElevationMap = field(default_factory=ElevationMap)
+    emulator: Emulator = field(default_factory=Emulator)
 
     def __post_init__(self) -> None:
         robot = self.load_robot()
