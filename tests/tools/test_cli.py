@@ -23,6 +23,8 @@ from surefoot.tools.commands import topics
         (["command", "stand", "--connect", "flat"], "robot cannot be reached from another machine"),
         (["child", "flat", "engine"], "no process 'engine'"),
         (["eval", "flat", "--seeds", "x", "--out", "out"], "--seeds 'x'"),
+        (["emulator", "--terrain", "moss"], "terrain.kind = 'moss': must be one of 'flat'"),
+        (["emulator", "--port", "0"], "hw.aliengo.port = 0: out of range"),
         (["eval", "aliengo", "--seeds", "0", "--out", "out"], "hw.backend = 'aliengo': runs are graded with"),
         (["reproduce", "out", "--set", "flat_gaol_m=0.3"], "did you mean flat_goal_m?"),
         (["reproduce", "out", "--jobs", "0"], "--jobs 0: at least one"),
