@@ -16,7 +16,7 @@ from surefoot.hw.aliengo.state_feed import StateFeed
 from surefoot.hw.errors import HardwareFault, PacketError
 from surefoot.hw.robot_interface import DepthImage, MotorLaw, Sensors
 
-_AGAIN_S = 0.05  # a packet may have been lost: on this machine an answer takes a millisecond or two
+_AGAIN_S = 1.0  # until a packet counts as lost: an answer that is only late would cost the robot a cycle
 
 
 class LockstepDriver:

@@ -29,10 +29,10 @@ def deployment(pace="packets", commands=SOUND, states=SOUND, **settings):
 class Client:
     """A socket that, as the vendor's, hears the address alone that it speaks to."""
 
-    def __init__(self, server):
+    def __init__(self, emulation):
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.settimeout(60.0)
-        self._socket.connect(("127.0.0.1", server.port))
+        self._socket.connect(("127.0.0.1", emulation.server.port))
 
     def __enter__(self):
         return self
@@ -57,37 +57,37 @@ class Client:
 
 
 def test_each_command_takes_a_cycle_and_is_answered_once():
-    with emulator(deployment()) as (server, _), Client(server) as client:
+    with emulator(deployment()) as there, Client(there) as client:
         assert [client.ask() for _ in range(20)] == [2000 * n for n in range(1, 21)]
-    assert server.answers == server.robot.commands == 20 and server.robot.t == pytest.approx(0.040)
+    assert there.server.answers == there.robot.commands == 20 and there.robot.t == pytest.approx(0.040)
 
 
 def test_each_client_gets_its_own_answers():
-    with emulator(deployment()) as (server, _), Client(server) as one, Client(server) as other:
+    with emulator(deployment()) as there, Client(there) as one, Client(there) as other:
         assert [one.ask(), other.ask(), one.ask(), other.ask()] == [2000, 4000, 6000, 8000]
 
 
 def test_what_is_no_command_takes_a_cycle_and_gets_no_answer():
-    with emulator(deployment()) as (server, _), Client(server) as client:
+    with emulator(deployment()) as there, Client(there) as client:
         for garbage in (COMMAND[:-1], bytes(610), b"hello"):
             client.say(garbage)
         client.say()
-        assert client.hears_nothing_before(8000) and server.robot.refused == 3
+        assert client.hears_nothing_before(8000) and there.robot.refused == 3
 
 
 def test_a_lost_command_takes_a_cycle_too():
-    with emulator(deployment(commands=replace(SOUND, loss=1.0))) as (server, _), Client(server) as client:
+    with emulator(deployment(commands=replace(SOUND, loss=1.0))) as there, Client(there) as client:
         for _ in range(20):
             client.say()
-        while server.robot.t < 0.0399:
+        while there.robot.t < 0.0399:
             pass
-    assert server.robot.commands == server.answers == 0 and server.robot.t == pytest.approx(0.040)
+    assert there.robot.commands == there.server.answers == 0 and there.robot.t == pytest.approx(0.040)
 
 
 def test_latency_of_whole_cycles_is_that_many_packets():
     with (
-        emulator(deployment(states=Wire(latency_s=0.0041, jitter_s=0.0))) as (server, _),
-        Client(server) as client,
+        emulator(deployment(states=Wire(latency_s=0.0041, jitter_s=0.0))) as there,
+        Client(there) as client,
     ):
         for _ in range(6):
             client.say()
@@ -95,14 +95,14 @@ def test_latency_of_whole_cycles_is_that_many_packets():
 
 
 def test_at_the_walls_pace_the_robots_time_goes_on_by_itself():
-    with emulator(deployment(pace="wall")) as (server, _), Client(server) as client:
+    with emulator(deployment(pace="wall")) as there, Client(there) as client:
         first = client.ask()
         while client.ask() == first:
             pass
-    assert server.robot.commands >= 2 and server.answers == server.robot.commands
+    assert there.robot.commands >= 2 and there.server.answers == there.robot.commands
 
 
 def test_a_port_that_is_taken_is_named_with_what_to_do():
     named = r"UDP port \d+ at 127\.0\.0\.1: .* give --port"
-    with emulator(deployment()) as (server, _), pytest.raises(HardwareFault, match=named):
-        EmulatorServer(deployment(), port=server.port)
+    with emulator(deployment()) as there, pytest.raises(HardwareFault, match=named):
+        EmulatorServer(deployment(), port=there.server.port)
