@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from surefoot.config.elevation_map import ElevationMap
+from surefoot.config.emulator import Emulator
 from surefoot.config.estimator import Estimator
 from surefoot.config.fsm import Fsm
 from surefoot.config.hw import Hw
@@ -57,9 +58,11 @@ class Deployment:
     wbc: Wbc = field(default_factory=Wbc)
     fsm: Fsm = field(default_factory=Fsm)
     elevation_map: ElevationMap = field(default_factory=ElevationMap)
+    emulator: Emulator = field(default_factory=Emulator)
 
     def __post_init__(self) -> None:
         robot = self.load_robot()
+        self._check_backend()
         self._check_gains()
         self._check_plans(robot)
         self._check_forces(robot)
@@ -68,6 +71,23 @@ class Deployment:
     def load_robot(self) -> Robot:
         """The figures of this deployment's robot."""
         return load_robot(self.robot)
+
+    def _check_backend(self) -> None:
+        """A real robot does not wait, and has no camera on its link."""
+        if self.hw.backend != "aliengo":
+            return
+        fitting = {"timer": "monotonic", "cycle": "simulated"}
+        clock, exchange = self.run.clock, self.hw.aliengo.exchange
+        if clock != fitting[exchange]:
+            raise ConfigError(
+                f"run.clock = {clock!r} with hw.aliengo.exchange = {exchange!r}: a robot does not wait, set "
+                "'monotonic' and 'timer'; with an emulator paced by packets 'simulated' and 'cycle'"
+            )
+        if self.run.vision:
+            raise ConfigError(
+                "run.vision = true with hw.backend = 'aliengo': there is no camera on the robot's link; set "
+                "run.vision = false"
+            )
 
     def _check_gains(self) -> None:
         """The gate damps in every cycle in which a gain is above its limit."""

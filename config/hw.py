@@ -1,10 +1,11 @@
-"""Settings of the hardware layer: which backend, and how the simulated plant differs from its model."""
+"""Settings of the hardware layer: which robot, its wire, how the simulated plant differs from its model."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
+from surefoot.config.aliengo import Aliengo
 from surefoot.config.depth_camera import DepthCamera
 from surefoot.config.typed_toml import Within, ordered
 
@@ -13,7 +14,7 @@ from surefoot.config.typed_toml import Within, ordered
 class Hw:
     """Backend and simulated plant. The seed draws every random figure."""
 
-    backend: Literal["mujoco"] = "mujoco"
+    backend: Literal["mujoco", "aliengo"] = "mujoco"
     seed: Annotated[int, Within(0, 2**31)] = 0
     start: Literal["standing", "lying"] = "standing"
     command_delay_s: Annotated[float, Within(0.0, 0.1)] = 0.004  # from command to motor
@@ -39,6 +40,7 @@ class Hw:
         0.005  # time constant of contacts; soft defaults sink millimetres [s]
     )
     depth: DepthCamera = field(default_factory=DepthCamera)
+    aliengo: Aliengo = field(default_factory=Aliengo)
 
     def __post_init__(self) -> None:
         ordered(self, "friction_min", "friction_max", "friction is drawn between the two")

@@ -22,6 +22,7 @@ class Sensors:
     tau: np.ndarray  # (12,) motor torque estimates [N m]
     omega_WB_B: np.ndarray  # (3,) gyroscope [rad/s]
     acc_B: np.ndarray  # (3,) specific force [m/s^2]
+    t: float | None = None  # when it was measured, on this machine's monotonic clock [s]; None: at this instant
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,10 @@ def damping_law(kd: float) -> MotorLaw:
 
 class RobotInterface(Protocol):
     """A robot, simulated or real."""
+
+    @property
+    def trouble(self) -> str:
+        """In words what is amiss though it goes on: with the link, or with the last law; empty when nothing is."""
 
     def read(self) -> Sensors:
         """The newest sensor values.

@@ -8,11 +8,12 @@ from surefoot.bus.messages import DepthFrame, HardwareState
 from surefoot.bus.topics import CYCLE_HZ
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.config.deployment import Deployment
+from surefoot.hw.aliengo.backend import open_aliengo
 from surefoot.hw.gate import Gate
 from surefoot.hw.mujoco.backend import MujocoRobot
 from surefoot.hw.robot_interface import MotorLaw, damping_law
 
-BACKENDS = {"mujoco": MujocoRobot}
+BACKENDS = {"mujoco": MujocoRobot, "aliengo": open_aliengo}
 """The robot interface behind each name of `hw.backend`."""
 
 
@@ -41,11 +42,10 @@ class Io(Component):
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         sensors = self.robot.read()
         law = self._gate.law(inbox.latest("joint/command"), t)
-        self.trouble = self._gate.reason
         outbox.publish(
             "hw/state",
             HardwareState(
-                t=t,
+                t=t if sensors.t is None else sensors.t - self.deployment.run.epoch_s,
                 valid=True,
                 q=sensors.q,
                 dq=sensors.dq,
@@ -73,6 +73,7 @@ class Io(Component):
         if truth is not None:
             outbox.publish("sim/truth", truth)
         self._advance(t, law)
+        self.trouble = "; ".join(words for words in (self._gate.reason, self.robot.trouble) if words)
 
     def deactivate(self, t: float, inbox: Inbox, outbox: Outbox) -> bool:
         """The last command damps; then the robot is let go."""

@@ -61,10 +61,18 @@ class MujocoRobot:
         """Simulated time [s]."""
         return self._step * PHYSICS_DT
 
+    @property
+    def trouble(self) -> str:
+        """Nothing ever is."""
+        return ""
+
     def read(self) -> Sensors:
         data, settings = self.data, self._settings
         if not np.isfinite(data.qpos).all():
-            raise HardwareFault(f"the simulation diverged at {self.t:.3f} s: positions are not finite")
+            raise HardwareFault(
+                f"the simulation diverged at {self.t:.3f} s, positions are not finite: lower the gains, or give "
+                "softer contacts (hw.solref_s)"
+            )
         noise = {
             name: rng.standard_normal(12 if name in ("q", "dq", "tau") else 3) for name, rng in self._noise.items()
         }

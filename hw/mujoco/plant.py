@@ -29,6 +29,8 @@ _STREAMS = (
     "foam",
     "edge",
     "trap",
+    "link_commands",
+    "link_states",
 )
 """A stream is its place in here: new ones come last."""
 

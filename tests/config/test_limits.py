@@ -168,6 +168,11 @@ OUTSIDE = {
     "elevation_map.vfa.std_max_m=0": "0.001 to 0.5",
     "elevation_map.vfa.disc_gaps_max=0.6": "0 to 0.5",
     "elevation_map.vfa.slope_max=1.6": "0.05 to 1.2",
+    "hw.aliengo.stale_s=0": "0.004 to 1",
+    "emulator.states.loss=1.1": "0 to 1",
+    "emulator.commands.corrupt_bits=0": "1 to 1000",
+    "emulator.motors.heating_s=0": "0.01 to 10000",
+    "emulator.tick_start=-1": "0 to 4.29497e+09",
 }
 
 
@@ -263,6 +268,17 @@ TOGETHER = {
     "network.listen=tcp/127.0.0.1:7448": r"tcp lets everyone in; use tls and `surefoot keys init`, or insecure",
     "network.insecure=true network.listen=tcp/0.0.0.0:7448": r"without keys only 127\.0\.0\.1 may listen; use tls",
     "network.address=tls/10.0.0.1:7448": r"address = 'tls/10\.0\.0\.1:7448': a host name or an IP address",
+    "hw.backend=aliengo": r"^run\.clock = 'simulated' with hw\.aliengo\.exchange = 'timer': .* set 'monotonic'",
+    "hw.backend=aliengo run.clock=monotonic hw.aliengo.exchange=cycle hw.aliengo.address=127.0.0.1": (
+        r"^run\.clock = 'monotonic' with hw\.aliengo\.exchange = 'cycle': .* 'simulated' and 'cycle'"
+    ),
+    "hw.backend=aliengo run.clock=monotonic run.vision=true": r"^run\.vision = true .* set run\.vision = false",
+    "hw.aliengo.exchange=cycle": r"^hw\.aliengo: exchange = 'cycle' with address = '192\.168\.123\.10': .*'timer'",
+    "emulator.motors.cooled=95": r"^emulator\.motors: cooled = 95\.0 is above overheated = 90\.0",
+    "emulator.motors.ambient=85": r"^emulator\.motors: ambient = 85\.0 is above cooled = 80\.0",
+    "emulator.faults=[{kind='silent',joint='FL_hip'}]": r"faults\[0\]: joint = 'FL_hip': silent is of the whole",
+    "emulator.faults=[{kind='silent'},{kind='stuck_encoder'}]": r"faults\[1\]\.kind = 'stuck_encoder': must be",
+    "emulator.faults=[{kind='silent',begin_s=2,end_s=1}]": r"faults\[0\]: begin_s = 2\.0 is above end_s = 1\.0",
     "robot=spot": r"^robot 'spot' is not described; known: aliengo",
 }
 
@@ -288,6 +304,8 @@ def test_values_that_do_not_go_together_are_named(assignments, said):
         "network.listen=tls/[::]:7448 network.address=fe80::1",
         f"network.hosts={{robot={ALL},pc=[]}} network.listen=tls/0.0.0.0:1 network.address=a network.host=pc",
         "mpc.profile=light mpc.interval_s=0.02 mpc.intervals=50",
+        "hw.backend=aliengo run.clock=monotonic hw.aliengo.generation=G0 hw.aliengo.local_port=8008",
+        "hw.backend=aliengo hw.aliengo.exchange=cycle hw.aliengo.address=127.0.0.1",
     ],
 )
 def test_what_a_researcher_may_try_is_let_through(assignments):

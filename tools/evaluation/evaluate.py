@@ -66,8 +66,8 @@ def evaluate(
         record: keep a recording of every run, `seed_N.mcap`, in the folder.
 
     Raises:
-        ConfigError: the deployment, an override or the arm is wrong, there is less than one job, the folder
-            holds the runs of another evaluation, or the cluster cannot do them.
+        ConfigError: the deployment, an override or the arm is wrong, its robot is not simulated, there is less
+            than one job, the folder holds the runs of another evaluation, or the cluster cannot do them.
     """
     if jobs < 1:
         raise ConfigError(f"--jobs {jobs}: at least one")
@@ -76,7 +76,12 @@ def evaluate(
     changes = [*arm_overrides(arm), *overrides]
     if vision is not None:
         changes.append(f"run.vision={str(vision).lower()}")
-    file = ResultsFile(out, scenario.stem, arm, load_deployment(scenario, changes), limit_s)
+    deployment = load_deployment(scenario, changes)
+    if deployment.hw.backend != "mujoco":
+        raise ConfigError(
+            f"hw.backend = {deployment.hw.backend!r}: runs are graded with the simulator's truth; set 'mujoco'"
+        )
+    file = ResultsFile(out, scenario.stem, arm, deployment, limit_s)
     if not fresh:
         file.resume()
     missing = file.missing(seeds)

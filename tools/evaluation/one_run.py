@@ -14,6 +14,7 @@ import numpy as np
 from surefoot.components.io.io import Io
 from surefoot.components.lockstep import Listener, Lockstep
 from surefoot.config.deployment import Deployment
+from surefoot.hw.mujoco.backend import MujocoRobot
 from surefoot.tools.evaluation.grader import Grader
 from surefoot.tools.evaluation.stopwatch import Stopwatch
 from surefoot.tools.evaluation.true_state import TrueState
@@ -70,8 +71,9 @@ def _grade(
     stack = Lockstep(deployment, given=[TrueState(deployment)] if true_state else [])
     recording = LockstepRecording(stack, deployment, record) if record is not None else None
     io = cast(Io, stack.components["io"])  # what the registry has under this name
-    grader = Grader(deployment, io.robot.field)
-    physics = Stopwatch(io.robot)
+    robot = cast(MujocoRobot, io.robot)  # only what knows the truth can be graded: `evaluate` refuses others
+    grader = Grader(deployment, robot.field)
+    physics = Stopwatch(robot)
     stack.listen(grader)
     for listener in listeners:
         stack.listen(listener)

@@ -1,0 +1,126 @@
+"""The Aliengo of the emulator: packets in, packets out, MuJoCo's robot between them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import asin, atan2
+
+import numpy as np
+
+from surefoot.bus.topics import CYCLE_HZ
+from surefoot.config.deployment import Deployment
+from surefoot.hw.aliengo.aliengo_state import AliengoState
+from surefoot.hw.aliengo.command_packet import decode_command
+from surefoot.hw.aliengo.generation import GENERATIONS
+from surefoot.hw.aliengo.plausibility import Plausibility
+from surefoot.hw.aliengo.remote import Remote
+from surefoot.hw.aliengo.state_packet import encode_state
+from surefoot.hw.aliengo.tick_clock import UNITS_S
+from surefoot.hw.emulator.broken_parts import BrokenParts
+from surefoot.hw.emulator.motors import Motors
+from surefoot.hw.errors import PacketError
+from surefoot.hw.mujoco.backend import MujocoRobot
+
+CYCLE_S = 1.0 / CYCLE_HZ
+"""By which the robot's time goes on at once [s]."""
+
+
+class EmulatedRobot:
+    """Physics, delays and noise are the simulated robot's, limits and meanings those of `hw.aliengo`.
+
+    Attributes:
+        plant: the simulated robot behind it.
+        commands: how many it has followed.
+        refused: how many it has not, for they were damaged or no commands.
+        trouble: in words what was last amiss with one.
+    """
+
+    def __init__(self, deployment: Deployment):
+        robot, wire, settings = deployment.load_robot(), deployment.hw.aliengo, deployment.emulator
+        self.plant = MujocoRobot(deployment)
+        self._generation, self._reading = GENERATIONS[wire.generation], wire.reading
+        self._plausibility = Plausibility(robot, wire.plausible)
+        self._settings = settings
+        self._broken = BrokenParts(settings.faults)
+        self._motors = Motors(robot, settings.motors, self._broken)
+        self._cycle_ticks = round(CYCLE_S / UNITS_S[settings.tick_unit])
+        self._cycles = 0
+        self.commands = self.refused = 0
+        self.trouble = ""
+        self._state = self._measured()
+
+    @property
+    def t(self) -> float:
+        """The robot's time [s]."""
+        return self._cycles * CYCLE_S
+
+    def take(self, packet: bytes) -> bool:
+        """Follow a command from now on; whether it is one."""
+        try:
+            command = decode_command(packet, self._generation, self._plausibility)
+        except PacketError as error:
+            self.refused += 1
+            self.trouble = str(error)
+            return False
+        self._motors.command(command, self.t)
+        self.commands += 1
+        return True
+
+    def answer(self) -> bytes | None:
+        """The packet of the present state; None from a robot that has fallen silent."""
+        if self._broken.has("silent", self.t):
+            return None
+        return encode_state(self._state, self._generation, self._reading)[0]
+
+    def advance(self) -> None:
+        """Go on by a cycle.
+
+        Raises:
+            HardwareFault: the physics diverged.
+        """
+        self.plant.write(self._motors.law(self.t))
+        self.plant.advance()
+        self._motors.warm(self.plant.truth().tau, CYCLE_S)
+        self._cycles += 1
+        self._state = self._with_stuck_parts(self._measured())
+
+    def _measured(self) -> AliengoState:
+        sensors, truth = self.plant.read(), self.plant.truth()
+        return AliengoState(
+            quat_WB=truth.quat_WB,
+            omega_WB_B=sensors.omega_WB_B,
+            acc_B=sensors.acc_B,
+            rpy=_roll_pitch_yaw(truth.quat_WB),
+            imu_temperature=self._settings.motors.ambient,
+            mode=self._motors.mode,
+            q=sensors.q,
+            dq=sensors.dq,
+            ddq=np.zeros(12),
+            tau=sensors.tau,
+            temperature=self._motors.temperature,
+            foot_force=truth.force_W[:, 2],  # in newtons, as good a unit as any
+            tick=(self._settings.tick_start + self._cycles * self._cycle_ticks) % 2**32,
+            remote=Remote(),
+        )
+
+    def _with_stuck_parts(self, state: AliengoState) -> AliengoState:
+        """What is stuck tells what it told a cycle ago."""
+        last, broken, t = self._state, self._broken, self.t
+        stuck = broken.joints("stuck encoder", t)
+        state = replace(state, q=np.where(stuck, last.q, state.q), dq=np.where(stuck, last.dq, state.dq))
+        if broken.has("stuck imu", t):
+            imu = ("quat_WB", "omega_WB_B", "acc_B", "rpy")
+            state = replace(state, **{name: getattr(last, name) for name in imu})
+        return replace(state, tick=last.tick) if broken.has("stuck tick", t) else state
+
+
+def _roll_pitch_yaw(quat: np.ndarray) -> np.ndarray:
+    """(3,) angles [rad] of a quaternion (w, x, y, z), turned about z, then y, then x."""
+    w, x, y, z = quat.tolist()
+    return np.array(
+        [
+            atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+            asin(min(max(2.0 * (w * y - z * x), -1.0), 1.0)),
+            atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
+        ]
+    )
