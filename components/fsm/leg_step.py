@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-
 from surefoot.components.fsm.arrow import Arrow, Fork
 from surefoot.components.fsm.balance import Balance
 from surefoot.components.fsm.course import Course
@@ -38,8 +36,7 @@ class LegStep:
     def begin_move(self, now: Observation) -> None:
         """The base goes inside the triangle of the other three; the swing waits for it."""
         settings, turn = self._settings, self._turn
-        distance = float(np.linalg.norm(turn.support_pose[:3] - now.estimate.p_WB))
-        duration = distance / settings.shift_speed
+        duration = self._motion.time_to(turn.support_pose, now)
         if not self._motion.in_air:
             duration = max(settings.shift_s, duration)
             self._swing.plan(now.t + duration, turn.foothold_W, now, turn.region)

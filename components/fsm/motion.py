@@ -122,6 +122,10 @@ class Motion:
         feet = now.estimate.p_WF.copy()
         self.reference = replace(self.reference, p_WF=feet, normal_W=now.estimate.normal_W)
 
+    def time_to(self, pose: np.ndarray, now: Observation) -> float:
+        """How long the base takes to a pose (6,) at the mean speed of a shift [s]."""
+        return float(np.linalg.norm(pose[:3] - now.estimate.p_WB)) / self._settings.shift_speed
+
     def shift_base(self, now: Observation, pose: np.ndarray, duration: float) -> None:
         """The base moves to a pose (6,) in a straight line."""
         self.reference = replace(

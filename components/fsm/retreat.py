@@ -135,8 +135,7 @@ class Retreat:
                 break
         else:
             return 0.0
-        distance = float(np.linalg.norm(pose[:3] - now.estimate.p_WB))
-        duration = max(settings.shift_s, distance / settings.shift_speed)
+        duration = max(settings.shift_s, motion.time_to(pose, now))
         motion.shift_base(now, pose, duration)
         return duration
 
