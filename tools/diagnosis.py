@@ -129,7 +129,8 @@ def _of_robot(picture: Picture) -> str:
     late = _late(picture)
     if hardware is not None and hardware.damping:
         wbc = picture.processes["wbc"].status
-        words = [f"the gate in io damps the robot: {hardware.gate}", late or (wbc.reason if wbc else "")]
+        damped = reference.reason if reference is not None and reference.state == "DAMP" else ""
+        words = [f"the gate in io damps the robot: {hardware.gate}", late or (wbc.reason if wbc else ""), damped]
         return "; ".join(part for part in words if part)
     if late:
         return late
@@ -138,7 +139,7 @@ def _of_robot(picture: Picture) -> str:
     if reference.finished:
         return "the robot has reached its goal and waits for a command"
     if reference.state == "DAMP":
-        if reference.reason in ("waiting for a command", "commanded", "sitting"):
+        if reference.reason in ("waiting for a command", "commanded") or reference.reason.startswith("sitting"):
             return f"the robot is damped ({reference.reason}): `surefoot command stand` or a direction gets it up"
         return f"the robot is damped: {reference.reason}"
     if reference.state == "STAND" and picture.command in DIRECTIONS:
