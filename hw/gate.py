@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from surefoot.bus.messages import JointCommand
@@ -31,8 +33,21 @@ class Gate:
         self._damp = damping_law(settings.damping_kd)
         self._passed_t: float | None = None
         self._latched = ""  # by what
+        self._held, self._holds = "", self._damp
         self.damping = True
         self.reason = "no command yet"
+
+    def cut(self, why: str) -> None:
+        """No torque from now on, until `free`."""
+        self._held, self._holds = why, replace(self._damp, kd=np.zeros(12))
+
+    def damp(self, why: str) -> None:
+        """Damping from now on, until `free`."""
+        self._held, self._holds = why, self._damp
+
+    def free(self) -> None:
+        """The operator takes back a cut, or the gate's own damping."""
+        self._held = ""
 
     def law(self, command: JointCommand | None, t: float) -> MotorLaw:
         """The motor law of a cycle at time `t` [s]."""
@@ -45,6 +60,9 @@ class Gate:
         self.reason = refusal
         if self._latched:
             self.reason = f"damped too long to go on ({self._latched}): command sit, or damp, then stand"
+        if self._held:
+            self.damping, self.reason = True, self._held
+            return self._holds
         if command is None or self.damping:
             return self._damp
         self._passed_t = t

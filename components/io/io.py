@@ -7,6 +7,7 @@ from typing import ClassVar
 from surefoot.bus.messages import DepthFrame, HardwareState
 from surefoot.bus.topics import CYCLE_HZ
 from surefoot.components.component import Component, Inbox, Outbox
+from surefoot.components.io.operator_hand import OperatorHand
 from surefoot.config.deployment import Deployment
 from surefoot.hw.aliengo.backend import open_aliengo
 from surefoot.hw.gate import Gate
@@ -21,14 +22,14 @@ class Io(Component):
     """Reads, publishes, gates and writes, then lets the plant advance to the next cycle.
 
     Every command passes the gate in the cycle in which it is applied; a missing, stale or malformed one
-    makes that same cycle damp.
+    makes that same cycle damp. In a dry run the motors only damp, and the gate tells what it would let pass.
 
     Attributes:
         robot: the robot interface in use.
     """
 
     name: ClassVar[str] = "io"
-    inputs: ClassVar[tuple[str, ...]] = ("joint/command",)
+    inputs: ClassVar[tuple[str, ...]] = ("joint/command", "operator/command")
     outputs: ClassVar[tuple[str, ...]] = ("hw/state", "hw/depth", "sim/truth")
     remembers: ClassVar[bool] = False
 
@@ -36,12 +37,25 @@ class Io(Component):
         super().__init__(deployment)
         self.robot = BACKENDS[deployment.hw.backend](deployment)
         self._gate = Gate(deployment.load_robot(), deployment.hw)
+        self._hand = OperatorHand(self._gate, deployment.operator.settle_s)
+        self.said = self._hand.said
+        self._damp = damping_law(deployment.hw.damping_kd)
+        self._dry = deployment.hw.dry_run
         self._began: float | None = None
         self._cycles = 0
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         sensors = self.robot.read()
-        law = self._gate.law(inbox.latest("joint/command"), t)
+        command = inbox.latest("joint/command")
+        self._hand.feel(sensors.stop)
+        for message in inbox.new("operator/command"):
+            self._hand.hear(message, t)
+        self._hand.watch(command, t)
+        law = self._gate.law(command, t)
+        damping, reason = self._gate.damping, self._gate.reason
+        if self._dry:
+            law, damping = self._damp, True
+            reason = f"DRY RUN, the motors only damp: {reason or 'the command would pass'}"
         outbox.publish(
             "hw/state",
             HardwareState(
@@ -52,8 +66,8 @@ class Io(Component):
                 tau=sensors.tau,
                 omega_WB_B=sensors.omega_WB_B,
                 acc_B=sensors.acc_B,
-                damping=self._gate.damping,
-                gate=self._gate.reason,
+                damping=damping,
+                gate=reason,
             ),
         )
         image = self.robot.depth()
@@ -73,11 +87,11 @@ class Io(Component):
         if truth is not None:
             outbox.publish("sim/truth", truth)
         self._advance(t, law)
-        self.trouble = "; ".join(words for words in (self._gate.reason, self.robot.trouble) if words)
+        self.trouble = "; ".join(words for words in (reason, self.robot.trouble) if words)
 
     def deactivate(self, t: float, inbox: Inbox, outbox: Outbox) -> bool:
         """The last command damps; then the robot is let go."""
-        self.robot.write(damping_law(self.deployment.hw.damping_kd))
+        self.robot.write(self._damp)
         self.robot.advance()
         self.robot.close()
         return True
