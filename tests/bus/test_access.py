@@ -220,7 +220,7 @@ def test_a_command_comes_in_by_the_deployment_and_the_operators_keys(network, hu
 
 def test_without_another_host_the_operator_may_only_ask():
     rules = {rule["id"]: rule for rule in access_control(Network(listen="tls/0.0.0.0:7448"), "ns")["rules"]}
-    assert rules["say"]["key_exprs"] == ["ns/operator/request", "ns/supervisor/request"]
+    assert rules["say"]["key_exprs"] == ["ns/operator/request", "ns/operator/beat", "ns/supervisor/request"]
     assert "answer" not in rules
 
 
