@@ -27,6 +27,7 @@ class Sensors:
     acc_B: np.ndarray  # (3,) specific force [m/s^2]
     t: float | None = None  # when it was measured, on this machine's monotonic clock [s]; None: at this instant
     stop: Stop = ""  # what a person who is with the robot asks for now
+    temperature: np.ndarray | None = None  # (12,) of the motors [deg C]; None: nobody measures it
 
 
 @dataclass(frozen=True)

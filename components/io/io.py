@@ -10,9 +10,9 @@ from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.io.operator_hand import OperatorHand
 from surefoot.config.deployment import Deployment
 from surefoot.hw.aliengo.backend import open_aliengo
-from surefoot.hw.gate import Gate
+from surefoot.hw.gate.gate import Gate
 from surefoot.hw.mujoco.backend import MujocoRobot
-from surefoot.hw.robot_interface import MotorLaw, damping_law
+from surefoot.hw.robot_interface import MotorLaw, Sensors
 
 BACKENDS = {"mujoco": MujocoRobot, "aliengo": open_aliengo}
 """The robot interface behind each name of `hw.backend`."""
@@ -22,7 +22,8 @@ class Io(Component):
     """Reads, publishes, gates and writes, then lets the plant advance to the next cycle.
 
     Every command passes the gate in the cycle in which it is applied; a missing, stale or malformed one
-    makes that same cycle damp. In a dry run the motors only damp, and the gate tells what it would let pass.
+    makes that same cycle damp, and so does a robot that is beyond its limits. In a dry run the motors only damp,
+    and the gate tells what it would let pass.
 
     Attributes:
         robot: the robot interface in use.
@@ -39,27 +40,18 @@ class Io(Component):
         self._gate = Gate(deployment.load_robot(), deployment.hw)
         self._hand = OperatorHand(self._gate, deployment.operator.settle_s)
         self.said = self._hand.said
-        self._damp = damping_law(deployment.hw.damping_kd)
         self._dry = deployment.hw.dry_run
         self._began: float | None = None
         self._cycles = 0
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         sensors = self.robot.read()
-        command = inbox.latest("joint/command")
-        self._hand.feel(sensors.stop)
-        for message in inbox.new("operator/command"):
-            self._hand.hear(message, t)
-        self._hand.watch(command, t)
-        law = self._gate.law(command, t)
-        damping, reason = self._gate.damping, self._gate.reason
-        if self._dry:
-            law, damping = self._damp, True
-            reason = f"DRY RUN, the motors only damp: {reason or 'the command would pass'}"
+        measured_t = t if sensors.t is None else sensors.t - self.deployment.run.epoch_s
+        law, damping, reason = self._judged(inbox, sensors, t, t - measured_t)
         outbox.publish(
             "hw/state",
             HardwareState(
-                t=t if sensors.t is None else sensors.t - self.deployment.run.epoch_s,
+                t=measured_t,
                 valid=True,
                 q=sensors.q,
                 dq=sensors.dq,
@@ -90,11 +82,24 @@ class Io(Component):
         self.trouble = "; ".join(words for words in (reason, self.robot.trouble) if words)
 
     def deactivate(self, t: float, inbox: Inbox, outbox: Outbox) -> bool:
-        """The last command damps; then the robot is let go."""
-        self.robot.write(self._damp)
+        """The last command damps, or leaves the torque cut; then the robot is let go."""
+        self.robot.write(self._gate.safe_law)
         self.robot.advance()
         self.robot.close()
         return True
+
+    def _judged(self, inbox: Inbox, sensors: Sensors, t: float, age_s: float) -> tuple[MotorLaw, bool, str]:
+        """What the motors get, whether that damps, and what is to be said of it; people are heard first."""
+        command = inbox.latest("joint/command")
+        self._hand.feel(sensors.stop)
+        for message in inbox.new("operator/command"):
+            self._hand.hear(message, t)
+        self._hand.watch(command, t)
+        law = self._gate.law(command, sensors, t, age_s)
+        if not self._dry:
+            return law, self._gate.damping, self._gate.reason
+        words = self._gate.reason or "the command would pass"
+        return self._gate.safe_law, True, f"DRY RUN, the motors only damp: {words}"
 
     def _advance(self, t: float, law: MotorLaw) -> None:
         """One cycle; on the monotonic clock those that were missed too: a simulated plant does not wait.

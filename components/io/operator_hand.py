@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from surefoot.bus.messages import JointCommand, OperatorCommand
-from surefoot.hw.gate import Gate
+from surefoot.hw.gate.gate import Gate
 from surefoot.hw.robot_interface import Stop
 
 _WORDS = {"settle": "sit: buttons of the remote", "cut": "cut: buttons of the remote"}

@@ -37,6 +37,7 @@ class TimedState:
             acc_B=state.acc_B,
             t=self.t,
             stop=self.stop,
+            temperature=state.temperature,
         )
 
 
