@@ -339,6 +339,11 @@ class OperatorCommand(Message):
         """Without the reason."""
         return self.command.partition(": ")[0]
 
+    @property
+    def why(self) -> str:
+        """The reason; empty where a person has typed it."""
+        return self.command.partition(": ")[2]
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SimTruth(Message):

@@ -6,7 +6,8 @@ from surefoot.bus.messages import JointCommand, OperatorCommand
 from surefoot.hw.gate.gate import Gate
 from surefoot.hw.robot_interface import Stop
 
-_WORDS = {"settle": "sit: buttons of the remote", "cut": "cut: buttons of the remote"}
+_WORDS = {"settle": "sit", "cut": "cut"}
+_REMOTE = "buttons of the remote"
 
 
 class OperatorHand:
@@ -26,15 +27,15 @@ class OperatorHand:
     def feel(self, stop: Stop) -> None:
         """What is held on the remote now; a person who goes on holding it says it once."""
         if stop and stop != self._held:
-            self.said.append(_WORDS[stop])
+            self.said.append(f"{_WORDS[stop]}: {_REMOTE}")
             if stop == "cut":
-                self._gate.cut(_WORDS[stop])
+                self._gate.cut(_REMOTE)
         self._held = stop
 
     def hear(self, message: OperatorCommand, t: float) -> None:
         """A command at time `t` [s]; the state machine hears it as well."""
         if message.word == "cut":
-            self._gate.cut(message.command)
+            self._gate.cut(message.why or "by command")
         elif message.word == "damp":
             self._gate.free()
         if message.word != "sit":

@@ -57,5 +57,5 @@ def test_one_that_sits_or_is_told_otherwise_is_not(hand, then):
 
 
 def test_a_cut_has_its_reason_and_is_taken_back_by_damp_alone(hand):
-    hear(hand, "cut: a test", "sit", "stand", "damp")
-    assert hand._gate.told == [("cut", "cut: a test"), ("free",)]
+    hear(hand, "cut: a test", "sit", "stand", "damp", "cut")
+    assert hand._gate.told == [("cut", "a test"), ("free",), ("cut", "by command")]
