@@ -23,6 +23,7 @@ class Sensors:
     omega_WB_B: np.ndarray  # (3,) gyroscope [rad/s]
     acc_B: np.ndarray  # (3,) specific force [m/s^2]
     t: float | None = None  # when it was measured, on this machine's monotonic clock [s]; None: at this instant
+    temperature: np.ndarray | None = None  # (12,) of the motors [deg C]; None: nobody measures it
 
 
 @dataclass(frozen=True)
