@@ -29,13 +29,13 @@ class Gate:
     power: Annotated[float, Within(10.0, 2000.0)] = 500.0
     # From a measured angle to the end of its range [rad] (0.41); the vendor's figure.
     stop_margin: Annotated[float, Within(0.0, 0.5)] = 0.087
-    # With all four calves folded to within this of the lying posture the robot lies [rad]; a walk is 0.9 away.
+    # With all four calves folded to within this of the lying posture the robot lies [rad]; a walk stays 0.7 away.
     lying: Annotated[float, Within(0.0, 1.0)] = 0.3
-    # Of a motor [deg C]; no walk of minutes heats an emulated one beyond 65.
+    # Of a motor [deg C]; an emulated one ends there by a steady 30 N m.
     temperature_warn: Celsius = 70.0
     # [deg C]; 10 below where an emulated motor brakes by itself. The vendor gives no figure.
     temperature_max: Celsius = 80.0
-    # Of the trunk from upright [rad] (0.2); roll and pitch of 0.7 each, at which fsm damps first, make 0.95.
+    # Of the trunk from upright [rad] (0.07); roll and pitch of 0.7 each, at which fsm damps first, make 0.95.
     tilt_max: Annotated[float, Within(0.1, 3.2)] = 1.0
     # For so long the gate's attitude follows the gyroscope more than the accelerometer [s].
     tilt_filter_s: Annotated[float, Within(0.05, 10.0)] = 0.5
