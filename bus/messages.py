@@ -327,9 +327,22 @@ class FsmEvent(Message):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class OperatorCommand(Message):
-    """`operator/command`: what a person asks for."""
+    """`operator/command`: what a person asks for, or what is done because nobody is there to ask."""
 
-    command: str = text("stand, sit, forward, backward, left, right, stop or damp")
+    command: str = text(
+        "stand, sit, forward, backward, left, right, stop, damp or cut; what a person did not type has its reason "
+        "after a colon"
+    )
+
+    @property
+    def word(self) -> str:
+        """Without the reason."""
+        return self.command.partition(": ")[0]
+
+    @property
+    def why(self) -> str:
+        """The reason; empty where a person has typed it."""
+        return self.command.partition(": ")[2]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

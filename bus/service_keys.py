@@ -19,6 +19,9 @@ LOG = "log"
 REQUEST = "operator/request"
 """People's commands to the process of io, which dates and numbers them."""
 
+BEAT = "operator/beat"
+"""The operator's side says that it is there. No topic: only its absence counts, which becomes a command."""
+
 DEPLOYMENT = "deployment"
 """The process of io answers with the resolved configuration."""
 

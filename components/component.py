@@ -117,6 +117,7 @@ class Component:
         complete: streams of which it needs every message; of others the newest is enough on the monotonic clock.
         trouble: in words why the last step could not do its work; empty when it could. The process's status
             tells it.
+        said: what a person has commanded at the robot itself; who passes it on empties it.
     """
 
     name: ClassVar[str]
@@ -131,6 +132,7 @@ class Component:
 
     def __init__(self, deployment: Deployment):
         self.deployment = deployment
+        self.said: list[str] = []
 
     def warm_up(self) -> None:
         """Everything slow, once: load, factorise, solve one problem."""

@@ -140,4 +140,16 @@ class Lockstep:
 
     def run(self, until_s: float, stop: Callable[[], bool] = lambda: False) -> None:
         """Advance to simulated time `until_s` or until `stop()` holds."""
-        self.scheduler.run_until(round(until_s * NS), stop)
+
+        def between() -> bool:
+            self._pass_on()
+            return stop()
+
+        self.scheduler.run_until(round(until_s * NS), between)
+
+    def _pass_on(self) -> None:
+        """What people ask for at the robot itself is a command as any other."""
+        for component in self.components.values():
+            for command in component.said:
+                self.command(command)
+            component.said.clear()

@@ -238,7 +238,8 @@ class HubRunner(Runner):
 
     def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0):
         super().__init__(deployment, name, boot, parent)
-        self._desk = OperatorDesk(self._session, self._stepper.buffers.drop, lossless=False)
+        drop = self._stepper.buffers.drop
+        self._desk = OperatorDesk(self._session, drop, deployment.operator, lossless=False)
         serve_time(self._session, deployment)
         serve_deployment(self._session, deployment)
 
@@ -247,5 +248,5 @@ class HubRunner(Runner):
         self._desk.close()
 
     def _live_step(self) -> None:
-        self._desk.publish(self._live_t())
+        self._desk.publish(self._live_t(), self._stepper.take_said())
         super()._live_step()

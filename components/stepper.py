@@ -107,6 +107,12 @@ class Stepper:
         self._inbox.clear_new()
         health.stepped(1e3 * (time.perf_counter() - begun))
 
+    def take_said(self) -> list[str]:
+        """What a person has commanded at the robot itself since the last call."""
+        said = self.component.said.copy()
+        self.component.said.clear()
+        return said
+
     def deactivate(self, t: float) -> bool:
         """One release of a stop at time `t` [s]; true when the component has let go."""
         failed = self.health.life is Life.FAILED

@@ -10,6 +10,13 @@ from surefoot.config.typed_toml import ConfigError, Within, ordered
 LOOPBACK = ("127.0.0.1", "localhost")
 """This machine: what answers there is an emulator."""
 
+# fmt: off
+Button = Literal[
+    "R1", "L1", "START", "SELECT", "R2", "L2", "F1", "F2", "A", "B", "X", "Y", "UP", "RIGHT", "DOWN", "LEFT",
+]
+"""Of the wireless remote."""
+# fmt: on
+
 Celsius = Annotated[float, Within(-128.0, 200.0)]
 
 
@@ -40,6 +47,20 @@ class Plausible:
 
 
 @dataclass(frozen=True)
+class Chords:
+    """Buttons of the remote that stop the robot when all of them are held; an empty list has no meaning."""
+
+    settle: tuple[Button, ...] = ("L2", "B")  # the vendor's own damps; whether on every Aliengo is not documented
+    cut: tuple[Button, ...] = ("L1", "L2", "R1", "R2")  # both hands closed
+
+    def __post_init__(self) -> None:
+        if self.cut and set(self.cut) <= set(self.settle):
+            raise ConfigError(
+                f"cut = {list(self.cut)} is held with settle = {list(self.settle)}: nobody could only settle"
+            )
+
+
+@dataclass(frozen=True)
 class Aliengo:
     """The real robot on its wire. The PC needs a fixed address in its network, such as 192.168.123.162/24."""
 
@@ -53,6 +74,7 @@ class Aliengo:
     first_answer_s: Annotated[float, Within(0.05, 60.0)] = 3.0  # how long the first good state is awaited
     tick_unit: Literal["auto", "us", "ms", "none"] = "auto"  # the vendor says both; none: time by arrival
     exchange: Literal["timer", "cycle"] = "timer"  # cycle: with each step of io, for an emulator that waits
+    chords: Chords = field(default_factory=Chords)
     reading: Reading = field(default_factory=Reading)
     plausible: Plausible = field(default_factory=Plausible)
 

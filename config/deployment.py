@@ -17,6 +17,7 @@ from surefoot.config.hw import Hw
 from surefoot.config.mpc import Mpc
 from surefoot.config.network import Network
 from surefoot.config.ocp import Ocp
+from surefoot.config.operator import Operator
 from surefoot.config.robot import GRAVITY, Robot, load_robot
 from surefoot.config.terrain import Terrain
 from surefoot.config.trajopt import Trajopt
@@ -49,6 +50,7 @@ class Deployment:
     robot: str = "aliengo"
     run: Run = field(default_factory=Run)
     network: Network = field(default_factory=Network)
+    operator: Operator = field(default_factory=Operator)
     hw: Hw = field(default_factory=Hw)
     terrain: Terrain = field(default_factory=Terrain)
     estimator: Estimator = field(default_factory=Estimator)

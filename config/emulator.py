@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
+from surefoot.config.aliengo import Button
 from surefoot.config.robot import JOINT_NAMES
 from surefoot.config.typed_toml import ConfigError, Within, ordered
 
@@ -72,6 +73,18 @@ class Fault:
 
 
 @dataclass(frozen=True)
+class Press:
+    """Buttons of the remote that somebody holds for a while."""
+
+    buttons: tuple[Button, ...]
+    begin_s: Time  # of the robot's time
+    end_s: Time
+
+    def __post_init__(self) -> None:
+        ordered(self, "begin_s", "end_s", "the buttons would never be held")
+
+
+@dataclass(frozen=True)
 class Emulator:
     """`surefoot emulator`. Port and generation are those of `hw.aliengo`, plant and seed those of `hw`."""
 
@@ -83,3 +96,4 @@ class Emulator:
     states: Wire = field(default_factory=Wire)  # on their way back
     motors: Motors = field(default_factory=Motors)
     faults: tuple[Fault, ...] = ()
+    presses: tuple[Press, ...] = ()

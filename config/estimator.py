@@ -37,6 +37,8 @@ class Estimator:
     kinematics: Kinematic = 0.001  # foot roll and deflection [m]
     stance_rate: Walk = 0.003  # a foot on trusted ground creeps [m/sqrt(s)]
     probing_rate: Walk = 0.2  # a foot on ground that is not trusted [m/sqrt(s)]
+    rest_speed: White = 0.02  # of a trunk that lies still [m/s] ...
+    rest_rate: Annotated[float, Within(0.01, 1.0)] = 0.1  # ... and turns slower than this [rad/s]
     slip_gate: SlipGate = 20.0  # squared Mahalanobis distance beyond which a foot is taken to slip
     position_limit: Limit = 1.0  # standard deviation of height or tilt that means divergence [m, rad]
 

@@ -99,6 +99,8 @@ class Fsm:
     # Postures and limits.
     posture_speed: Annotated[float, Within(0.05, 10.0)] = 0.8  # of the fastest joint in JOINT mode [rad/s]
     posture_min_s: Duration = 0.2
+    posture_error_max: Annotated[float, Within(0.05, 3.0)] = 0.3  # beyond it a joint has not stood up [rad]
+    put_down_s: Duration = 4.0  # to sit: so long a leg in the air looks for where it stood
     tilt_max: Tilt = 0.7  # beyond this the robot has fallen and is damped [rad]
     crawl_order: tuple[Leg, Leg, Leg, Leg] = (2, 0, 3, 1)  # RL, FL, RR, FR
 

@@ -6,11 +6,14 @@ A cycle in which nothing is written damps: a forgotten command can never keep pu
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 
 from surefoot.bus.messages import SimTruth
+
+Stop = Literal["", "settle", "cut"]
+"""What is asked for at the robot itself, as with a remote: nothing, to sit down and damp, or no torque at once."""
 
 
 @dataclass(frozen=True)
@@ -23,6 +26,7 @@ class Sensors:
     omega_WB_B: np.ndarray  # (3,) gyroscope [rad/s]
     acc_B: np.ndarray  # (3,) specific force [m/s^2]
     t: float | None = None  # when it was measured, on this machine's monotonic clock [s]; None: at this instant
+    stop: Stop = ""  # what a person who is with the robot asks for now
     temperature: np.ndarray | None = None  # (12,) of the motors [deg C]; None: nobody measures it
 
 

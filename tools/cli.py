@@ -18,9 +18,11 @@ from surefoot.tools.commands import (  # noqa: E402
     bench,
     child,
     command,
+    cut,
     emulator,
     eval,
     faults,
+    heartbeat,
     info,
     keys,
     press,
@@ -30,12 +32,13 @@ from surefoot.tools.commands import (  # noqa: E402
     restart,
     run,
     status,
+    stop,
     topics,
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
 COMMANDS = (
-    *(run, emulator, command, status, restart, child, topics, keys),
+    *(run, emulator, command, stop, cut, heartbeat, status, restart, child, topics, keys),
     *(record, info, replay),
     *(eval, press, reproduce, faults, bench),
 )

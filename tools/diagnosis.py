@@ -129,16 +129,18 @@ def _of_robot(picture: Picture) -> str:
     late = _late(picture)
     if hardware is not None and hardware.damping:
         wbc = picture.processes["wbc"].status
-        words = [f"the gate in io damps the robot: {hardware.gate}", late or (wbc.reason if wbc else "")]
+        damped = reference.reason if reference is not None and reference.state == "DAMP" else ""
+        words = [f"the gate in io damps the robot: {hardware.gate}", late or (wbc.reason if wbc else ""), damped]
         return "; ".join(part for part in words if part)
-    if late:
+    asked = reference is not None and reference.state == "DAMP" and _as_asked(reference.reason)
+    if late and not asked:  # who has nothing to do for a damped robot is not late
         return late
     if reference is None:
         return "fsm has not said yet what the robot is to do"
     if reference.finished:
         return "the robot has reached its goal and waits for a command"
     if reference.state == "DAMP":
-        if reference.reason in ("waiting for a command", "commanded", "sitting"):
+        if asked:
             return f"the robot is damped ({reference.reason}): `surefoot command stand` or a direction gets it up"
         return f"the robot is damped: {reference.reason}"
     if reference.state == "STAND" and picture.command in DIRECTIONS:
@@ -150,6 +152,11 @@ def _of_robot(picture: Picture) -> str:
             return f"the robot stands ({reference.reason}): `surefoot command forward` sends it on"
         return f"the robot stopped: {reference.reason}; it waits for a command"
     return ""
+
+
+def _as_asked(reason: str) -> bool:
+    """Whether a robot is damped because a person, or an operator who is gone, has brought that about."""
+    return reason in ("waiting for a command", "commanded") or reason.startswith("sitting")
 
 
 def _absence(watched: Watched, now: float) -> str:

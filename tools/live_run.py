@@ -32,6 +32,7 @@ def live_run(
     plain: bool,
     reload: bool = False,
     record: Path | None = None,
+    beats: bool = False,
 ) -> int:
     """Run a deployment until it is over or the user ends it.
 
@@ -42,6 +43,7 @@ def live_run(
         plain: lines even where there is a terminal.
         reload: restart the processes whose source changes.
         record: write everything to this file.
+        beats: the operator is at this terminal: be the heartbeat that the deployment may ask for.
 
     Returns:
         0 the goal was reached, or it was ended in time or by the user; 1 it failed.
@@ -66,7 +68,7 @@ def live_run(
         if note:
             overrides.append("mpc.profile=light")
             deployment = load_deployment(config, overrides)
-    supervisor = Supervisor(config, overrides, deployment, SourceWatch() if reload else None, record)
+    supervisor = Supervisor(config, overrides, deployment, SourceWatch() if reload else None, record, beats)
     warning = check_space(record) if record is not None else ""
     if warning:
         supervisor.note(warning)
@@ -75,6 +77,8 @@ def live_run(
     interactive = console.is_terminal and not plain
     where = f" on {deployment.network.here}" if len(deployment.network.hosts) > 1 else ""
     title = f"Surefoot, {config.name}{where}, {deployment.run.clock} clock, mpc {deployment.mpc.profile}"
+    if deployment.hw.dry_run:
+        title += ", DRY RUN"
     state = Verdict()
 
     def until(picture: Picture) -> str:
@@ -83,6 +87,8 @@ def live_run(
         return state.reason if state.over else ""
 
     console.print(f"{title}; logs in {deployment.run.log_dir}/; Ctrl-C ends the run")
+    if deployment.operator.heartbeat_s and not beats:
+        console.print("the robot asks for the operator's heartbeat: surefoot heartbeat, or run with --beat")
     heed()
     try:
         if interactive:

@@ -51,6 +51,7 @@ class Supervisor:
         deployment: Deployment,
         sources: SourceWatch | None = None,
         record: Path | None = None,
+        beats: bool = False,
     ):
         """For a deployment.
 
@@ -60,6 +61,7 @@ class Supervisor:
             deployment: what both give.
             sources: restart what is made of them when they change (simulated time only).
             record: the file that a recorder writes, beside the processes.
+            beats: be the operator's heartbeat.
         """
         self._run, self._network = deployment.run, deployment.network
         self._simulated = deployment.run.clock == "simulated"
@@ -74,7 +76,7 @@ class Supervisor:
             if name not in self._network.components_here:
                 self.picture.processes[name].host = self._network.host_of(name)
         self._launcher = Launcher(config, settings, Path(deployment.run.log_dir))
-        self._desk = SupervisorDesk(config, settings, deployment, self.picture)
+        self._desk = SupervisorDesk(config, settings, deployment, self.picture, beats)
         self._handovers = Handovers(self.picture, self._launcher, self.note)
         self._policy = RestartPolicy(self.picture, self._handovers)
         self._queue = RestartQueue(self.picture, _UP_AGAIN_S)

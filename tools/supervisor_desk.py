@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from surefoot.bus.errors import BusError
-from surefoot.bus.service_keys import SUPERVISOR_REQUEST
+from surefoot.bus.service_keys import BEAT, SUPERVISOR_REQUEST
 from surefoot.bus.session import Session
 from surefoot.components import clock_messages as clock
 from surefoot.components.deployment_desk import check_settings
@@ -35,8 +35,25 @@ _NOTES = 5  # the last ones, in a notice
 class SupervisorDesk:
     """Keeps the picture of the run, takes people's requests, publishes the notice and answers."""
 
-    def __init__(self, config: Path, settings: Sequence[str], deployment: Deployment, picture: Picture):
-        """Of the supervisor of a deployment: its file, assignments on top of it, and what both give."""
+    def __init__(
+        self,
+        config: Path,
+        settings: Sequence[str],
+        deployment: Deployment,
+        picture: Picture,
+        beats: bool = False,
+    ):
+        """Of the supervisor of a deployment.
+
+        Args:
+            config: its file.
+            settings: assignments on top of it.
+            deployment: what both give.
+            picture: of the run.
+            beats: the operator is at this supervisor's terminal: it is the heartbeat that the robot may ask for.
+        """
+        self._beat_s = deployment.operator.beat_s if beats else 0.0
+        self._beat_due = 0.0
         self._config, self._settings = config, list(settings)
         self._deployment, self._picture = deployment, picture
         self._session: Session | None = None
@@ -68,6 +85,7 @@ class SupervisorDesk:
         """Hear what is new, tell what this supervisor knows."""
         if self._observer is not None:
             self._observer.look()
+        self._beat()
         if time.monotonic() >= self._notice_due:
             self.tell()
 
@@ -101,7 +119,14 @@ class SupervisorDesk:
             return
         if self._session is None:
             raise BusError(f"cannot give the command {command!r}: the bus is open only while `run` goes on")
+        self._beat()
         self._session.put(clock.REQUEST, command.encode())
+
+    def _beat(self) -> None:
+        now = time.monotonic()
+        if self._session is not None and self._beat_s and now >= self._beat_due:
+            self._beat_due = now + self._beat_s
+            self._session.put(BEAT, b"", lossless=False)
 
     def _connect(self, launcher: Launcher) -> Session:
         network, namespace = self._deployment.network, self._deployment.run.namespace

@@ -157,6 +157,17 @@ class ContactAidedFilter:
             self._forget(leg, self.R_WB @ p_BF[leg])
         return used
 
+    def rest(self) -> None:
+        """Correct with a base that lies still: on its belly nothing else holds it.
+
+        What the inertial sensors drift by would be taken for tilt and bias as soon as a foot holds again.
+        """
+        PHt = self.P[:, _V]
+        K = PHt @ np.linalg.inv(self.P[_V, _V] + self._settings.rest_speed**2 * _EYE3)
+        self.P -= K @ PHt.T
+        self.P[:] = 0.5 * (self.P + self.P.T)
+        self._inject(-K @ self.v_WB_W)
+
     def _inject(self, error: np.ndarray) -> None:
         self.p_WB += error[_P]
         self.v_WB_W += error[_V]

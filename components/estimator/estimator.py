@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from surefoot.bus.messages import HardwareState, LegStatus, StateEstimate
+from surefoot.bus.messages import ControlMode, HardwareState, LegStatus, StateEstimate
 from surefoot.bus.topics import TOPICS
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.estimator.contact_aided_filter import ContactAidedFilter
@@ -92,6 +92,9 @@ class Estimator(Component):
         stance = contact & ((status == LegStatus.STANCE) | probing)
         rate = np.where(probing, self._settings.probing_rate, self._settings.stance_rate)
         self._filter.update(p_BF, J_B, stance, rate, dt, self._rolling(q, dq))
+        damped = state.damping or (reference is not None and reference.mode == ControlMode.DAMP)
+        if damped and not stance.any() and self._lies_still(state):
+            self._filter.rest()
         healthy = self._guard(state, p_BF)
         self._publish(state, p_BF, J_B, dq, contact, force_W, healthy, outbox)
 
@@ -99,6 +102,12 @@ class Estimator(Component):
         self._filter.start(state.acc_B, p_BF, self._foot_radius)
         self._detector.assume(np.ones(4, bool))
         self._contact_WF = self._filter.p_WB + p_BF @ self._filter.R_WB.T
+
+    def _lies_still(self, state: HardwareState) -> bool:
+        """Whether the inertial sensors see no motion; of a damped robot that no foot holds: it lies."""
+        off = abs(float(np.sqrt(state.acc_B @ state.acc_B)) - GRAVITY)
+        turning = float(np.abs(self._filter.omega_B).max())
+        return off < _REST_TOLERANCE and turning < self._settings.rest_rate
 
     def _rolling(self, q: np.ndarray, dq: np.ndarray) -> np.ndarray:
         """(4, 3) velocity of the foot centres in the world when the feet roll on the ground without slip [m/s].

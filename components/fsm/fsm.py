@@ -13,16 +13,21 @@ from surefoot.bus.messages import ControlMode, FsmEvent, MotionReference, StateE
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.probing_cycle import ProbingCycle
+from surefoot.components.fsm.state import State
 from surefoot.components.memory import Memory
 from surefoot.components.robot_model import build_model
 from surefoot.components.robot_model.rotation import matrix_of, rpy_of
 from surefoot.config.deployment import Deployment
+from surefoot.config.robot import JOINT_NAMES
 
 DIRECTIONS = {"forward": (1.0, 0.0), "backward": (-1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}
 """Commanded directions in the base frame."""
 
-COMMANDS = (*DIRECTIONS, "stand", "sit", "stop", "damp")
+COMMANDS = (*DIRECTIONS, "stand", "sit", "stop", "damp", "cut")
 """Everything an operator may ask for."""
+
+_CUT = "cut by command"
+"""Why the robot is damped; nothing gets it up before a person has said damp."""
 
 
 class Posture(StrEnum):
@@ -93,20 +98,25 @@ class Fsm(Component):
 
     # Commands -------------------------------------------------------------------------------------------
 
-    def _command(self, command: str, now: Observation | None) -> None:
+    def _command(self, asked: str, now: Observation | None) -> None:
+        command = asked.partition(": ")[0]  # then why, where a person has not typed it
         if command not in COMMANDS:
-            self._report("refused", f"unknown command {command!r}; commands are {', '.join(COMMANDS)}")
+            self._report("refused", f"unknown command {asked!r}; commands are {', '.join(COMMANDS)}")
         elif command == "damp":
-            self._damp("commanded")
+            self._damp("waiting for a command" if self._cut else "commanded")
+        elif command == "cut":
+            self._damp(_CUT)
         elif now is None:
-            self._wish = command
+            self._wish = asked
             self._report("waiting", f"{command}: kept until there is a fresh state/estimate")
         elif command == "sit":
-            self._sit(now)
+            self._sit(now, asked)
         elif command == "stop":
             self._wish = ""
             if self._posture is None:
                 self._cycle.stop(now, "commanded stop")
+        elif self._cut:
+            self._report("refused", f"{command}: the torque was cut; command damp first")
         else:
             self._go(command, now)
 
@@ -120,28 +130,36 @@ class Fsm(Component):
         elif command == "stand":
             if self._posture is None:
                 self._cycle.stop(now, "commanded stand")
-        elif self._posture is Posture.STAND or self._cycle.state == "STOPPED":
+        elif self._posture is Posture.STAND or self._cycle.state == State.STOPPED:
             self._posture = None
             self._cycle.walk(now, np.array(DIRECTIONS[command]), command)
         else:
             self._wish = command
             self._cycle.stop(now, f"commanded {command}")
 
-    def _sit(self, now: Observation) -> None:
-        if self._posture is None and self._cycle.state != "STOPPED":
-            self._wish = "sit"
-            self._cycle.stop(now, "commanded sit")
-        elif self._posture is not Posture.DAMP:
-            self._move_joints(Posture.SIT_DOWN, self._lie_q, now, "commanded sit")
+    def _sit(self, now: Observation, asked: str) -> None:
+        """Settle from any state; a leg in the air is put down first."""
+        if self._posture is None and self._cycle.state != State.STOPPED:
+            self._wish = asked
+            self._cycle.stop(now, f"commanded {asked}")
+        elif self._posture not in (Posture.DAMP, Posture.SIT_DOWN):
+            self._sit_down(now, asked)
+
+    def _sit_down(self, now: Observation, asked: str) -> None:
+        self._wish = ""
+        self._move_joints(Posture.SIT_DOWN, self._lie_q, now, f"commanded {asked}")
+
+    @property
+    def _cut(self) -> bool:
+        return self._posture is Posture.DAMP and self._reason == _CUT
 
     # Postures -------------------------------------------------------------------------------------------
 
     def _advance(self, now: Observation, inbox: Inbox) -> None:
         if self._posture is Posture.STAND_UP and now.t >= self._joint_t1:
-            self._cycle.stand_up(now)
-            self._enter(Posture.STAND, "stood up")
+            self._stood_up(now)
         elif self._posture is Posture.SIT_DOWN and now.t >= self._joint_t1:
-            self._damp("sitting")
+            self._damp(self._reason.replace("commanded sit", "sitting"))
         elif self._posture is Posture.STAND:
             self._cycle.step(now)
         elif self._posture is None:
@@ -150,8 +168,30 @@ class Fsm(Component):
             for plan in inbox.new("trajopt/plan"):
                 self._cycle.plan(plan, now)
             self._cycle.step(now)
-        resting = self._posture is Posture.STAND or (self._posture is None and self._cycle.state == "STOPPED")
-        if self._wish and (resting or self._posture is Posture.DAMP) and now.t >= self._cycle.reference.base_t1:
+        self._grant_wish(now)
+
+    def _stood_up(self, now: Observation) -> None:
+        """A robot whose joints have not followed does not stand, whatever was asked of them."""
+        error = np.abs(now.estimate.q - self._joint_to)
+        worst = int(np.argmax(error))
+        if error[worst] > self._settings.posture_error_max:
+            self._damp(
+                f"did not stand up: {JOINT_NAMES[worst]} is {error[worst]:.2f} rad from its posture, limit "
+                f"{self._settings.posture_error_max} rad"
+            )
+            return
+        self._cycle.stand_up(now)
+        self._enter(Posture.STAND, "stood up")
+
+    def _grant_wish(self, now: Observation) -> None:
+        """Obey what had to wait for the robot to rest; to sit no longer than there is a way back for the leg."""
+        walks = self._posture is None and self._cycle.state != State.STOPPED
+        if self._wish.startswith("sit") and walks:
+            if self._cycle.state != State.RETURN_SAFE or self._cycle.waited_s(now) > self._settings.put_down_s:
+                self._sit_down(now, self._wish)
+            return
+        rests = self._posture is not Posture.SIT_DOWN and self._posture is not Posture.STAND_UP and not walks
+        if self._wish and rests and now.t >= self._cycle.reference.base_t1:
             wish, self._wish = self._wish, ""
             if wish != "stand" or self._posture is Posture.DAMP:
                 self._command(wish, now)
@@ -166,7 +206,7 @@ class Fsm(Component):
 
     def _damp(self, reason: str) -> None:
         self._wish = ""
-        if self._posture is not Posture.DAMP:
+        if self._posture is not Posture.DAMP or self._cut or reason == _CUT:
             self._enter(Posture.DAMP, reason)
 
     def _lost(self) -> None:

@@ -91,6 +91,10 @@ class ProbingCycle:
         """Candidate and around point of the moment, for events."""
         return {"candidate": self._turn.candidate, "around": self._turn.around}
 
+    def waited_s(self, now: Observation) -> float:
+        """How long the present state has lasted [s]."""
+        return now.t - self._entered
+
     # What the owner calls -------------------------------------------------------------------------------
 
     def stand_up(self, now: Observation) -> None:
@@ -146,7 +150,7 @@ class ProbingCycle:
         self._watch.load(now.estimate.force_W @ now.estimate.normal_W, self.motion.bearing)
         if self._settings.probing:
             self._heed_alarms(now)
-        self._follow(self._phases.advance(self.state, now.t - self._entered, now), now)
+        self._follow(self._phases.advance(self.state, self.waited_s(now), now), now)
 
     def message(self, t: float) -> MotionReference:
         """The reference to publish at time t."""

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntFlag
 from math import isnan
 
 import numpy as np
+
+from surefoot.config.aliengo import Chords
+from surefoot.hw.robot_interface import Stop
 
 _BYTES = np.dtype(
     {
@@ -40,6 +44,10 @@ class Button(IntFlag):
     LEFT = 1 << 15
 
 
+_OPPOSITE = (Button.UP | Button.DOWN, Button.LEFT | Button.RIGHT)
+"""No thumb holds both: such bytes are no remote's."""
+
+
 @dataclass(frozen=True)
 class Remote:
     """What is held on the remote; nothing when it is off."""
@@ -49,6 +57,30 @@ class Remote:
     ly: float = 0.0  # up is positive
     rx: float = 0.0  # right stick
     ry: float = 0.0
+
+
+class StopChords:
+    """Which buttons, all held together, stop the robot; others may be held beside them."""
+
+    def __init__(self, chords: Chords):
+        self._settle, self._cut = buttons_of(chords.settle), buttons_of(chords.cut)
+
+    def held(self, remote: Remote) -> Stop:
+        """What is asked for; to cut goes before to settle."""
+        buttons = remote.buttons
+        if any(both in buttons for both in _OPPOSITE):
+            return ""
+        if self._cut and self._cut in buttons:
+            return "cut"
+        return "settle" if self._settle and self._settle in buttons else ""
+
+
+def buttons_of(names: Iterable[str]) -> Button:
+    """The buttons of these names, held together."""
+    held = Button(0)
+    for name in names:
+        held |= Button[name]
+    return held
 
 
 def decode_remote(data: np.ndarray) -> Remote:

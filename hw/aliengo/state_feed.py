@@ -10,18 +10,20 @@ from surefoot.hw.aliengo.aliengo_state import AliengoState
 from surefoot.hw.aliengo.generation import GENERATIONS
 from surefoot.hw.aliengo.link_statistics import LinkRecorder
 from surefoot.hw.aliengo.plausibility import Plausibility
+from surefoot.hw.aliengo.remote import StopChords
 from surefoot.hw.aliengo.state_packet import decode_state
 from surefoot.hw.aliengo.tick_clock import TickClock
 from surefoot.hw.errors import PacketError
-from surefoot.hw.robot_interface import Sensors
+from surefoot.hw.robot_interface import Sensors, Stop
 
 
 @dataclass(frozen=True)
 class TimedState:
-    """A state and when it was measured, on this machine's monotonic clock [s]."""
+    """A state, when it was measured, on this machine's monotonic clock [s], and what the remote asks for in it."""
 
     t: float
     state: AliengoState
+    stop: Stop = ""
 
     @property
     def sensors(self) -> Sensors:
@@ -34,6 +36,7 @@ class TimedState:
             omega_WB_B=state.omega_WB_B,
             acc_B=state.acc_B,
             t=self.t,
+            stop=self.stop,
             temperature=state.temperature,
         )
 
@@ -49,6 +52,7 @@ class StateFeed:
     def __init__(self, settings: Aliengo, plausibility: Plausibility, recorder: LinkRecorder):
         self._generation = GENERATIONS[settings.generation]
         self._reading, self._plausibility, self._recorder = settings.reading, plausibility, recorder
+        self._chords = StopChords(settings.chords)
         self.clock = TickClock(settings.tick_unit)
         self.newest: TimedState | None = None
 
@@ -71,7 +75,8 @@ class StateFeed:
                 continue
             ahead = self.clock.ahead(state.tick)
             if ahead > 0:
-                self.newest = TimedState(self.clock.follow(state.tick, arrived), state)
+                t, stop = self.clock.follow(state.tick, arrived), self._chords.held(state.remote)
+                self.newest = TimedState(t, state, stop)
                 new += 1
             elif ahead == 0:
                 duplicates += 1

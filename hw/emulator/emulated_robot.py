@@ -13,7 +13,7 @@ from surefoot.hw.aliengo.aliengo_state import AliengoState
 from surefoot.hw.aliengo.command_packet import decode_command
 from surefoot.hw.aliengo.generation import GENERATIONS
 from surefoot.hw.aliengo.plausibility import Plausibility
-from surefoot.hw.aliengo.remote import Remote
+from surefoot.hw.aliengo.remote import Button, Remote, buttons_of
 from surefoot.hw.aliengo.state_packet import encode_state
 from surefoot.hw.aliengo.tick_clock import UNITS_S
 from surefoot.hw.emulator.broken_parts import BrokenParts
@@ -102,8 +102,13 @@ class EmulatedRobot:
             temperature=self._motors.temperature,
             foot_force=truth.force_W[:, 2],  # in newtons, as good a unit as any
             tick=(self._settings.tick_start + self._cycles * self._cycle_ticks) % 2**32,
-            remote=Remote(),
+            remote=Remote(self._held()),
         )
+
+    def _held(self) -> Button:
+        """What somebody holds on the remote now."""
+        presses = [press for press in self._settings.presses if press.begin_s <= self.t < press.end_s]
+        return buttons_of(name for press in presses for name in press.buttons)
 
     def _with_stuck_parts(self, state: AliengoState) -> AliengoState:
         """What is stuck tells what it told a cycle ago."""

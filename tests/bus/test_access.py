@@ -94,7 +94,13 @@ def test_the_operator_hears_the_robot_and_speaks_for_its_own_processes(hub, lapt
     robot, operator = Ear(hub), Ear(laptop)
     for key in ("hw/state", "sim/truth", "clock/release/mpc"):
         operator.wait(key, b"robot", lambda key=key: hub.put(key, b"robot"))
-    for key in (*ITS_OWN, "operator/request", "supervisor/request", *(f"{prefix}/mpc" for prefix in OF_A_PROCESS)):
+    for key in (
+        *ITS_OWN,
+        "operator/request",
+        "operator/beat",
+        "supervisor/request",
+        *(f"{prefix}/mpc" for prefix in OF_A_PROCESS),
+    ):
         robot.wait(key, b"laptop", lambda key=key: laptop.put(key, b"laptop"))
 
 
@@ -214,7 +220,7 @@ def test_a_command_comes_in_by_the_deployment_and_the_operators_keys(network, hu
 
 def test_without_another_host_the_operator_may_only_ask():
     rules = {rule["id"]: rule for rule in access_control(Network(listen="tls/0.0.0.0:7448"), "ns")["rules"]}
-    assert rules["say"]["key_exprs"] == ["ns/operator/request", "ns/supervisor/request"]
+    assert rules["say"]["key_exprs"] == ["ns/operator/request", "ns/operator/beat", "ns/supervisor/request"]
     assert "answer" not in rules
 
 

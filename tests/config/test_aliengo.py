@@ -18,9 +18,10 @@ def test_the_emulated_robot_differs_from_the_real_one_by_its_address_only():
     assert load_deployment(CONFIG / "aliengo.toml", ["hw.aliengo.address=127.0.0.1"]) == emulated
 
 
-def test_the_real_robot_is_commanded_by_people_only():
-    run = load_deployment(CONFIG / "aliengo.toml").run
-    assert run.clock == "monotonic" and run.command == ""
+def test_the_real_robot_is_commanded_by_people_only_and_asks_whether_they_are_there():
+    deployment = load_deployment(CONFIG / "aliengo.toml")
+    run = deployment.run
+    assert run.clock == "monotonic" and run.command == "" and deployment.operator.heartbeat_s == 2.0
 
 
 @pytest.mark.parametrize(
@@ -28,6 +29,8 @@ def test_the_real_robot_is_commanded_by_people_only():
     [
         ({"address": " "}, r"hw\.aliengo: address is empty: give the robot's"),
         ({"generation": "G2"}, r"hw\.aliengo\.generation = 'G2': must be one of 'G0', 'G1'"),
+        ({"chords": {"cut": ["L3"]}}, r"hw\.aliengo\.chords\.cut\[0\] = 'L3': must be one of 'R1'"),
+        ({"chords": {"settle": ["L2", "B"], "cut": ["B"]}}, r"cut = \['B'\] is held with settle"),
         ({"port": 0}, r"hw\.aliengo\.port = 0: out of range, allowed 1 to 65535"),
         (
             {"plausible": {"temperature_min": 130.0}},

@@ -21,6 +21,7 @@ from surefoot.tools.commands import topics
         (["command", "jump"], "there are forward"),
         (["run", "flat", "--host", "laptop"], "network: host = 'laptop': hosts has robot"),
         (["command", "stand", "--connect", "flat"], "robot cannot be reached from another machine"),
+        *(([word, "--connect", "flat"], "robot cannot be reached from") for word in ("stop", "cut", "heartbeat")),
         (["child", "flat", "engine"], "no process 'engine'"),
         (["eval", "flat", "--seeds", "x", "--out", "out"], "--seeds 'x'"),
         (["emulator", "--terrain", "moss"], "terrain.kind = 'moss': must be one of 'flat'"),

@@ -198,6 +198,21 @@ def test_the_one_that_is_late_is_named_and_not_those_that_wait_behind_it():
     assert troubles(picture, NOW)["io"] == "joint/command of wbc, 200 ms, limit 40 ms is too old"
 
 
+def test_what_a_robot_that_sits_has_no_use_for_is_not_late():
+    picture = walking()
+    say(picture, "wbc", input_age_s=ages("wbc", mpc_policy=12.0))
+    picture.reference = MotionReference(t=5.0, valid=True, state="DAMP", reason="sitting: no heartbeat for 2 s")
+    assert why(picture).startswith("the robot is damped (sitting: no heartbeat for 2 s): `surefoot command stand`")
+
+
+def test_what_the_gate_says_in_a_dry_run_does_not_hide_why_the_state_machine_gave_up():
+    picture = walking()
+    gate, reason = "DRY RUN, the motors only damp: the command would pass", "did not stand up: FL_calf"
+    picture.hardware = HardwareState(t=5.0, valid=True, damping=True, gate=gate)
+    picture.reference = MotionReference(t=5.0, valid=True, state="DAMP", reason=reason)
+    assert why(picture) == f"the gate in io damps the robot: {gate}; {reason}"
+
+
 def test_a_robot_damped_by_the_gate_is_told_with_the_gates_reason_and_who_is_behind_it():
     picture = walking()
     picture.hardware = HardwareState(

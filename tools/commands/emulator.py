@@ -9,8 +9,8 @@ from surefoot.tools.commands.call import deployment_file
 
 _EMULATOR = """\
 An Aliengo that is not there: it speaks the real one's packets on a UDP port, and MuJoCo moves it. It answers when
-it is spoken to. In another terminal `surefoot run aliengo_emulated` talks to it as `surefoot run aliengo` does to
-the real one; `surefoot command stand` gets it up.
+it is spoken to. In another terminal `surefoot run aliengo_emulated --beat` talks to it as `surefoot run aliengo`
+does to the real one; `surefoot command stand` gets it up.
 
 What goes wrong is set under `emulator`: loss, delay, order and damage of packets in either direction, stuck
 sensors, dead and hot motors, what the robot does when commands stop. See docs/hardware.md.

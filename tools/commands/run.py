@@ -26,6 +26,8 @@ time.
 import the changed file, once it compiles; one that fails with the new source waits for the next change.
 `surefoot child CONFIG NAME` in another terminal takes the place of one process, under a debugger if you like.
 
+`surefoot stop` lets the robot sit down and be damped, `surefoot cut` takes its torque away; the run stays up.
+
 --record OUT.mcap writes all that is published and what every step has read: see `surefoot info` and `replay`.
 
 With --host NAME it starts what network.hosts gives that machine, and connects to the robot's. Start the robot's
@@ -54,6 +56,9 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--reload", action="store_true", help="restart the processes whose source changes (simulated clock)"
     )
+    parser.add_argument(
+        "--beat", action="store_true", help="be the operator's heartbeat, where operator.heartbeat_s asks for one"
+    )
     parser.add_argument("--record", type=Path, metavar="OUT.mcap", help="record everything that is published")
     parser.set_defaults(run=_run)
 
@@ -62,4 +67,5 @@ def _run(call: argparse.Namespace) -> int:
     from surefoot.tools.live_run import live_run
 
     overrides = [*call.set, f"network.host={call.host}"] if call.host else call.set
-    return live_run(deployment_file(call.config), overrides, call.seconds, call.plain, call.reload, call.record)
+    file = deployment_file(call.config)
+    return live_run(file, overrides, call.seconds, call.plain, call.reload, call.record, call.beat)

@@ -5,7 +5,7 @@ import pinocchio as pin
 import pytest
 
 from surefoot.bus.codec import encode
-from surefoot.bus.messages import HardwareState, JointCommand, LegStatus, MotionReference
+from surefoot.bus.messages import ControlMode, HardwareState, JointCommand, LegStatus, MotionReference
 from surefoot.components.component import Inbox, Outbox
 from surefoot.components.estimator.contact_detector import ContactDetector
 from surefoot.components.estimator.contact_force import ContactForce
@@ -175,6 +175,34 @@ def test_a_foot_that_sinks_while_probed_does_not_drag_the_base():
     probed = drift_when_a_foot_seems_to_sink(np.array([probing, stance, stance, stance]))
     assert probed < 2e-3
     assert trusted > probed
+
+
+def speed_of_one_that_lies(seconds, mode=ControlMode.BALANCE, **state):
+    """What is told of the base's speed when no foot feels the ground and the accelerometer is 0.05 m/s^2 off."""
+    estimator = Estimator(Deployment())
+    got = {}
+    inbox, outbox = Inbox(estimator.inputs), Outbox(estimator.outputs, got.__setitem__)
+    q = np.tile(ROBOT.nominal.lie_q, 4)
+    for cycle in range(round(seconds / 0.002)):
+        t = 0.002 * cycle
+        acc_B = np.array([0.0, 0.0, GRAVITY + (0.05 if cycle else 0.0)])
+        inbox.deliver("hw/state", HardwareState(t=t, valid=True, q=q, acc_B=acc_B, **state))
+        inbox.deliver("fsm/reference", MotionReference(t=t, valid=True, mode=mode))
+        estimator.step(t, inbox, outbox)
+    assert not got["state/estimate"].contact.any()
+    return np.abs(got["state/estimate"].v_WB_W).max()
+
+
+def test_a_damped_robot_that_lies_on_its_belly_is_known_not_to_drift_away():
+    assert speed_of_one_that_lies(3.0) > 0.1
+    assert speed_of_one_that_lies(3.0, damping=True) < 0.01
+    assert speed_of_one_that_lies(3.0, mode=ControlMode.DAMP) < 0.01
+
+
+def test_one_that_turns_or_falls_is_not_taken_to_lie_still():
+    still = {"damping": True, "omega_WB_B": np.zeros(3)}
+    turning = still | {"omega_WB_B": np.array([0.0, 0.0, 0.3])}
+    assert speed_of_one_that_lies(1.0, **turning) > 2.0 * speed_of_one_that_lies(1.0, **still)
 
 
 def test_it_waits_for_rest_and_says_so():

@@ -90,6 +90,10 @@ class Puppet:
                 self.sunk[leg] = 0.0
         now = self.observe()
         self._answer(now)
+        self.step(now)
+
+    def step(self, now):
+        """One tick of the cycle alone."""
         self.cycle.step(now)
 
     def _answer(self, now):

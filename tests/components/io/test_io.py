@@ -6,7 +6,7 @@ from typing import get_args, get_type_hints
 import numpy as np
 import pytest
 
-from surefoot.bus.messages import JointCommand
+from surefoot.bus.messages import JointCommand, OperatorCommand
 from surefoot.components.component import Inbox, Outbox
 from surefoot.components.io.io import BACKENDS, Io
 from surefoot.config.deployment import Deployment, Run
@@ -14,11 +14,16 @@ from surefoot.config.hw import Hw
 from surefoot.config.robot import load_robot
 
 
-def run(io, cycles, command=None):
+def run(io, cycles, command=None, words=()):
+    """What is published in so many cycles; `words` are commanded in the first."""
     published = []
     inbox, outbox = Inbox(io.inputs), Outbox(io.outputs, lambda key, message: published.append((key, message)))
+    for word in words:
+        inbox.deliver("operator/command", OperatorCommand(valid=True, command=word))
     for cycle in range(cycles):
         t = 0.002 * cycle
+        if cycle:
+            inbox.clear_new()
         if command is not None:
             inbox.deliver("joint/command", command(t))
         io.step(t, inbox, outbox)
@@ -28,6 +33,13 @@ def run(io, cycles, command=None):
 def hold(t):
     q = np.tile(load_robot("aliengo").nominal.stand_q, 4)
     return JointCommand(t=t, valid=True, q=q, kp=np.full(12, 300.0), kd=np.full(12, 8.0))
+
+
+def laws_of(io):
+    """All that is written to the motors from now on."""
+    laws, write = [], io.robot.write
+    io.robot.write = lambda law: (laws.append(law), write(law))
+    return laws
 
 
 def test_every_cycle_says_what_the_sensors_and_the_gate_saw():
@@ -95,9 +107,7 @@ def test_a_robot_whose_torque_is_cut_is_left_without():
 
 def test_the_cycles_missed_in_a_stall_are_made_up_and_none_with_a_command_too_old():
     io = Io(Deployment())
-    written = []
-    write = io.robot.write
-    io.robot.write = lambda law: (written.append(law), write(law))
+    written = laws_of(io)
     inbox, outbox = Inbox(io.inputs), Outbox(io.outputs, lambda key, message: None)
     inbox.deliver("joint/command", hold(0.0))
     io.step(0.0, inbox, outbox)
@@ -119,3 +129,31 @@ def test_with_vision_an_image_has_the_time_of_its_cycles_state_and_blind_there_i
         assert frame.depth_m.dtype == np.float32 and frame.depth_m.max() > 0.3
         np.testing.assert_array_equal(frame.fov, [settings.fov_x, settings.fov_y])
     assert not [key for key, _ in run(Io(Deployment()), 70) if key == "hw/depth"]
+
+
+def test_a_cut_takes_the_torque_in_the_cycle_that_it_comes_in_whatever_the_controller_sends():
+    io = Io(Deployment())
+    laws = laws_of(io)
+    run(io, 3, hold, ["cut"])
+    assert len(laws) == 3 and not any(law.kp.any() or law.kd.any() or law.tau.any() for law in laws)
+    assert "cut" in io.trouble
+
+
+def test_in_a_dry_run_all_is_computed_and_the_motors_only_damp():
+    io = Io(Deployment(hw=Hw(dry_run=True)))
+    laws = laws_of(io)
+    state = run(io, 3, hold)[-2][1]
+    assert not any(law.kp.any() or law.tau.any() for law in laws) and all(law.kd.all() for law in laws)
+    assert state.damping and state.gate == io.trouble == "DRY RUN, the motors only damp: the command would pass"
+    assert "DRY RUN" in (words := run(Io(Deployment(hw=Hw(dry_run=True))), 1)[0][1].gate)
+    assert words.endswith("no command yet")
+
+
+@pytest.mark.parametrize(("stop", "word"), [("settle", "sit"), ("cut", "cut")])
+def test_what_is_held_on_a_remote_is_said_once_and_a_cut_is_made_at_once(stop, word):
+    io = Io(Deployment())
+    read, laws = io.robot.read, laws_of(io)
+    io.robot.read = lambda: replace(read(), stop=stop)
+    run(io, 3, hold)
+    assert io.said == [f"{word}: buttons of the remote"]
+    assert all(law.kd.any() for law in laws) == (stop == "settle")

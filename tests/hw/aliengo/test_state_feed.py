@@ -9,6 +9,7 @@ from packet_samples import PLAUSIBILITY, READING, drawn_state
 from surefoot.config.aliengo import Aliengo
 from surefoot.hw.aliengo.generation import G0, G1
 from surefoot.hw.aliengo.link_statistics import LinkRecorder
+from surefoot.hw.aliengo.remote import Button, Remote
 from surefoot.hw.aliengo.state_feed import StateFeed
 from surefoot.hw.aliengo.state_packet import encode_state
 
@@ -74,3 +75,12 @@ def test_a_bad_packet_is_named_and_costs_no_good_one(feed, recorder):
 def test_a_tick_far_ahead_in_a_damaged_packet_does_not_make_the_next_ones_old(feed):
     feed.take([packet(1), damaged(10**9), packet(2)], 1.0)
     assert feed.newest.state.tick == 2
+
+
+@pytest.mark.parametrize("generation", [G0, G1])
+def test_what_the_remote_asks_for_comes_with_the_sensors(generation, recorder):
+    feed = StateFeed(Aliengo(generation=generation.name), PLAUSIBILITY, recorder)
+    feed.take([packet(1, generation, remote=Remote(Button.L2 | Button.B))], 0.0)
+    assert feed.newest.sensors.stop == "settle"
+    feed.take([packet(2, generation, remote=Remote())], 0.0)
+    assert feed.newest.sensors.stop == ""

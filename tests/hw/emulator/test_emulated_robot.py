@@ -8,11 +8,12 @@ from packet_samples import ANY_ANGLE, GOOD_LAW, PLAUSIBILITY, READING
 
 from surefoot.config.aliengo import Aliengo
 from surefoot.config.deployment import Deployment
-from surefoot.config.emulator import Emulator, Fault
+from surefoot.config.emulator import Emulator, Fault, Press
 from surefoot.config.hw import Hw
 from surefoot.config.robot import JOINT_NAMES
 from surefoot.hw.aliengo.command_packet import encode_brake, encode_command
 from surefoot.hw.aliengo.generation import G0, G1
+from surefoot.hw.aliengo.remote import Button
 from surefoot.hw.aliengo.state_packet import decode_state
 from surefoot.hw.emulator.emulated_robot import EmulatedRobot
 
@@ -134,3 +135,10 @@ def test_angles_beyond_every_robots_are_no_command():
     machine = robot()
     assert not machine.take(encode_command(replace(HOLD, q=np.full(12, 8.0)), G1, ANY_ANGLE)[0])
     assert "law.q of FL_hip = 8 rad" in machine.trouble
+
+
+def test_buttons_of_its_remote_are_held_when_the_settings_say_so():
+    presses = (Press(("L2", "B"), 0.004, 0.008), Press(("UP",), 0.006, 0.010))
+    held = [each.remote.buttons for each in run(robot(presses=presses), 5)]
+    both = Button.L2 | Button.B
+    assert held == [0, both, both | Button.UP, Button.UP, 0]

@@ -1,0 +1,30 @@
+"""`surefoot cut`: no torque at once."""
+
+from __future__ import annotations
+
+import argparse
+
+from surefoot.tools.commands.bus_call import add_bus_arguments
+from surefoot.tools.commands.say import say_on_bus
+
+_CUT = """
+Take the torque from every joint of the robot of a running stack in the next cycle: it falls where it is. io
+itself obeys; no other process has to run. Nothing moves before `surefoot command damp`, which brakes the joints
+again, and then `stand`.
+"""
+
+
+def add(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "cut", help="no torque at once: the robot falls", description=" ".join(_CUT.split())
+    )
+    add_bus_arguments(parser)
+    parser.set_defaults(run=_run)
+
+
+def _run(call: argparse.Namespace) -> int:
+    from surefoot.bus.service_keys import REQUEST
+
+    say_on_bus(call, REQUEST, "cut")
+    return 0

@@ -1,0 +1,31 @@
+"""`surefoot stop`: the robot sits down and is damped."""
+
+from __future__ import annotations
+
+import argparse
+
+from surefoot.tools.commands.bus_call import add_bus_arguments
+from surefoot.tools.commands.say import say_on_bus
+
+_STOP = """
+Let the robot of a running stack settle, from whatever it does: a leg in the air is put down, the robot sits down
+and is damped. The run stays up, and nothing moves before `surefoot command stand` or a direction. If it is still
+driven after operator.settle_s, io damps it. `surefoot command stop` is something else: it ends a walk, and the
+robot stands. `surefoot cut` takes the torque away at once. Ctrl-C in the terminal of `surefoot run` ends the run.
+"""
+
+
+def add(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "stop", help="sit down, then damp; the run stays up", description=" ".join(_STOP.split())
+    )
+    add_bus_arguments(parser)
+    parser.set_defaults(run=_run)
+
+
+def _run(call: argparse.Namespace) -> int:
+    from surefoot.bus.service_keys import REQUEST
+
+    say_on_bus(call, REQUEST, "sit")
+    return 0
