@@ -135,7 +135,7 @@ class MotionReference(Message):
     `swing_v_touch` until the state machine has seen contact.
     """
 
-    state: str = text("state of Fig. 6, or a posture: DAMP, STAND_UP, STAND, SIT_DOWN, ...")
+    state: str = text("state of Fig. 6, or a posture: DAMP, HOLD, STAND_UP, STAND, SIT_DOWN, ...")
     reason: str = text("why the machine entered this state")
     mode: int = integer("a ControlMode")
     leg: int = integer("leg being moved or probed; -1 none", default=-1)
@@ -329,7 +329,7 @@ class FsmEvent(Message):
 class OperatorCommand(Message):
     """`operator/command`: what a person asks for."""
 
-    command: str = text("stand, sit, forward, backward, left, right, stop or damp")
+    command: str = text("hold, stand, sit, forward, backward, left, right, stop or damp")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -12,7 +12,7 @@ from surefoot.tools.commands.say import say_on_bus
 def add(commands: argparse._SubParsersAction) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser("command", help="command the robot of a running stack")
-    parser.add_argument("command", help="stand, sit, forward, backward, left, right, stop or damp")
+    parser.add_argument("command", help="hold, stand, sit, forward, backward, left, right, stop or damp")
     add_bus_arguments(parser)
     parser.set_defaults(run=_run)
 
