@@ -30,13 +30,14 @@ from surefoot.tools.commands import (  # noqa: E402
     reproduce,
     restart,
     run,
+    service,
     status,
     topics,
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
 COMMANDS = (
-    *(run, emulator, doctor, command, status, restart, child, topics, keys),
+    *(run, emulator, doctor, service, command, status, restart, child, topics, keys),
     *(record, info, replay),
     *(eval, press, reproduce, faults, bench),
 )
