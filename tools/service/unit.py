@@ -23,7 +23,7 @@ WorkingDirectory={folder}
 Environment=PYTHONUNBUFFERED=1
 ExecStartPre={call} doctor {config}
 ExecStart={call} run {config} --plain
-# No restart: a run that has ended has damped the robot, perhaps in mid-step. A person looks before it gets up again.
+# No restart: a run that has ended has damped the robot, perhaps in mid-step. A person looks before it gets up.
 Restart=no
 # The supervisor alone is told to stop: it ends the processes in order, hardware last.
 KillMode=mixed
