@@ -49,7 +49,7 @@ def check_angles(q: np.ndarray, robot: Robot) -> Finding:
     expected = f"within {low[worst]:.2f} and {high[worst]:.2f} rad"
     if beyond[worst] <= _STOP_GIVES:
         return well(check, "all twelve inside their ranges")
-    remedy = "its zero is lost: switch the robot off, fold its legs as it lies, switch it on"
+    remedy = "its zero may be lost: switch the robot off, fold its legs as it lies, switch it on"
     return Finding(check, Level.FAIL, f"{JOINT_NAMES[worst]} at {q[worst]:.2f} rad", expected, remedy)
 
 
