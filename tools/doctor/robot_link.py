@@ -31,7 +31,7 @@ def check_answer(heard: Heard, wire: Aliengo) -> Finding:
     if heard.states:
         return well(check, f"{count} packets", expected)
     if not count:
-        remedy = "switch it on, wait until its own program runs, then L2+A and L1+L2+START on its remote: low-level mode"
+        remedy = "switch it on; once its own program runs, L2+A and L1+L2+START on its remote: low-level mode"
         trouble = f" ({heard.trouble})" if heard.trouble else ""
         return Finding(check, Level.FAIL, f"silence for {wire.first_answer_s:g} s{trouble}", expected, remedy)
     return Finding(check, Level.FAIL, f"{count} packets, none that can be used", expected, heard.trouble)
