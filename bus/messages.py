@@ -135,7 +135,7 @@ class MotionReference(Message):
     `swing_v_touch` until the state machine has seen contact.
     """
 
-    state: str = text("state of Fig. 6, or a posture: DAMP, STAND_UP, STAND, SIT_DOWN, ...")
+    state: str = text("state of Fig. 6, or a posture: DAMP, HOLD, STAND_UP, STAND, SIT_DOWN, ...")
     reason: str = text("why the machine entered this state")
     mode: int = integer("a ControlMode")
     leg: int = integer("leg being moved or probed; -1 none", default=-1)
@@ -330,8 +330,8 @@ class OperatorCommand(Message):
     """`operator/command`: what a person asks for, or what is done because nobody is there to ask."""
 
     command: str = text(
-        "stand, sit, forward, backward, left, right, stop, damp or cut; what a person did not type has its reason "
-        "after a colon"
+        "hold, stand, sit, forward, backward, left, right, stop, damp or cut; what a person did not type has its "
+        "reason after a colon"
     )
 
     @property

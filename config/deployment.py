@@ -9,6 +9,7 @@ from math import sqrt
 from pathlib import Path
 from typing import Annotated, Literal
 
+from surefoot.config.doctor import Doctor
 from surefoot.config.elevation_map import ElevationMap
 from surefoot.config.emulator import Emulator
 from surefoot.config.estimator import Estimator
@@ -61,6 +62,7 @@ class Deployment:
     fsm: Fsm = field(default_factory=Fsm)
     elevation_map: ElevationMap = field(default_factory=ElevationMap)
     emulator: Emulator = field(default_factory=Emulator)
+    doctor: Doctor = field(default_factory=Doctor)
 
     def __post_init__(self) -> None:
         robot = self.load_robot()

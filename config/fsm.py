@@ -97,6 +97,8 @@ class Fsm:
     unsteady_s: Pause = 0.04  # ... for this long
 
     # Postures and limits.
+    hold_s: Pause = 0.0  # a damped robot's gains come up in this time before it stands up; 0: at once
+    hold_error: Annotated[float, Within(0.01, 1.0)] = 0.15  # a joint that leaves its hold so far is damped [rad]
     posture_speed: Annotated[float, Within(0.05, 10.0)] = 0.8  # of the fastest joint in JOINT mode [rad/s]
     posture_min_s: Duration = 0.2
     posture_error_max: Annotated[float, Within(0.05, 3.0)] = 0.3  # beyond it a joint has not stood up [rad]

@@ -15,6 +15,9 @@ _OWN = {
 }
 """Keys of each section that only the machine itself goes by."""
 
+_WHOLLY_OWN = ("doctor",)
+"""Sections that are no process's."""
+
 _DIGEST = 8  # hexadecimal digits: by chance two are alike once in four billion
 
 
@@ -50,7 +53,8 @@ def differences(mine: dict[str, Any], other: dict[str, Any]) -> list[str]:
 
 
 def _chosen_here(tables: dict[str, Any]) -> tuple[str, ...]:
-    return ("mpc",) if tables.get("run", {}).get("clock") == "monotonic" else ()
+    chosen = ("mpc",) if tables.get("run", {}).get("clock") == "monotonic" else ()
+    return (*_WHOLLY_OWN, *chosen)
 
 
 def _flatten(path: str, value: Any, into: dict[str, Any]) -> None:

@@ -19,6 +19,7 @@ from surefoot.tools.commands import (  # noqa: E402
     child,
     command,
     cut,
+    doctor,
     emulator,
     eval,
     faults,
@@ -31,6 +32,7 @@ from surefoot.tools.commands import (  # noqa: E402
     reproduce,
     restart,
     run,
+    service,
     status,
     stop,
     topics,
@@ -38,7 +40,7 @@ from surefoot.tools.commands import (  # noqa: E402
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
 COMMANDS = (
-    *(run, emulator, command, stop, cut, heartbeat, status, restart, child, topics, keys),
+    *(run, emulator, doctor, service, command, stop, cut, heartbeat, status, restart, child, topics, keys),
     *(record, info, replay),
     *(eval, press, reproduce, faults, bench),
 )

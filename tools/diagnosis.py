@@ -143,6 +143,8 @@ def _of_robot(picture: Picture) -> str:
         if asked:
             return f"the robot is damped ({reference.reason}): `surefoot command stand` or a direction gets it up"
         return f"the robot is damped: {reference.reason}"
+    if reference.state == "HOLD" and picture.command in ("", "hold"):
+        return "the robot is held where it lies: `surefoot command stand` gets it up, damp lets it go"
     if reference.state == "STAND" and picture.command in DIRECTIONS:
         return ""  # it sets off as soon as it is at its height
     if reference.state == "STAND":

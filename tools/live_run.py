@@ -3,24 +3,33 @@
 from __future__ import annotations
 
 import re
+import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
-from rich.console import Console
+from rich.console import Console, Group
 from rich.live import Live
 
 from surefoot.config.deployment import Deployment, load_deployment
 from surefoot.tools.commands.call import CallError
 from surefoot.tools.diagnosis import why_nothing_moves
+from surefoot.tools.doctor.check import failures
+from surefoot.tools.doctor.examination import examine_robot
+from surefoot.tools.doctor.report import as_lines
 from surefoot.tools.end_signals import heed
 from surefoot.tools.picture import Picture
 from surefoot.tools.recording.recorder import check_space
 from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.solve_time import light_profile_reason
+from surefoot.tools.startup.dialog import Dialog
+from surefoot.tools.startup.keyboard import Keyboard
+from surefoot.tools.startup.readiness import Readiness
 from surefoot.tools.status_screen import TOLD, event_line, process_table, screen
 from surefoot.tools.supervisor import Supervisor
 from surefoot.tools.verdict import Verdict, verdict
 
+_DRAW_S = 0.2
 _LINE_S = 10.0
 _WHY_S = 3.0
 
@@ -61,6 +70,10 @@ def live_run(
         )
     if record is not None and not deployment.network.at_hub:
         raise CallError(f"--record is for {deployment.network.hub}, the machine of io: all journals meet there")
+    interactive = console.is_terminal and not plain
+    guided = interactive and _is_guided(deployment)
+    if guided and not _is_sound(deployment):
+        return 1
     note = ""
     if _profile_is_open(deployment, overrides):
         console.print("measuring how long a solve of the MPC takes here")
@@ -74,7 +87,6 @@ def live_run(
         supervisor.note(warning)
     if note:
         supervisor.note(note)
-    interactive = console.is_terminal and not plain
     where = f" on {deployment.network.here}" if len(deployment.network.hosts) > 1 else ""
     title = f"Surefoot, {config.name}{where}, {deployment.run.clock} clock, mpc {deployment.mpc.profile}"
     if deployment.hw.dry_run:
@@ -92,14 +104,14 @@ def live_run(
     heed()
     try:
         if interactive:
-            # The screen wraps long lines; the console that prints on leaves that to the terminal.
-            with Live(console=Console(), screen=True, auto_refresh=False) as live:
 
-                def draw(picture: Picture) -> None:
-                    closing = f"{state.reason}. {state.advice}" if state.reason else ""
-                    live.update(screen(picture, deployment.fsm.alternatives, title, closing), refresh=True)
+            def drawn(picture: Picture) -> Group:
+                closing = f"{state.reason}. {state.advice}" if state.reason else ""
+                return screen(picture, deployment.fsm.alternatives, title, closing)
 
-                reason = supervisor.run(until, _Seldom(0.2, draw))
+            dialog = _dialog(deployment, console, supervisor) if guided else None
+            with _Screen(drawn, dialog) as shown:
+                reason = supervisor.run(until, shown)
         else:
             reason = supervisor.run(until, _Lines(console))
     except KeyboardInterrupt:
@@ -119,17 +131,54 @@ def _profile_is_open(deployment: Deployment, overrides: list[str]) -> bool:
     return deployment.run.clock == "monotonic" and deployment.mpc.profile == "paper" and not said
 
 
-class _Seldom:
-    """Passes a call on if the last one is long enough ago."""
+def _is_guided(deployment: Deployment) -> bool:
+    """A real robot that waits for a command, and a person who can answer."""
+    waits = deployment.hw.backend == "aliengo" and not deployment.run.command and deployment.network.at_hub
+    return waits and sys.stdin.isatty()
 
-    def __init__(self, period_s: float, call):
-        self._period_s, self._call, self._last = period_s, call, 0.0
+
+def _is_sound(deployment: Deployment) -> bool:
+    """Whether nothing speaks against starting the robot; says what does."""
+    say = Console(soft_wrap=True, highlight=False).print
+    findings = examine_robot(deployment, say)
+    say(*as_lines(findings), sep="\n")
+    if wrong := failures(findings):
+        say(f"not started: {', '.join(finding.check for finding in wrong)}; with --plain it is started damped")
+    return not wrong
+
+
+def _dialog(deployment: Deployment, console: Console, supervisor: Supervisor) -> Dialog:
+    def say(words: str) -> None:
+        console.print(words, markup=False, highlight=False)
+
+    return Dialog(Readiness(deployment.load_robot(), deployment.doctor), say, supervisor.command)
+
+
+class _Screen:
+    """The status on the whole screen; before that, line by line, the dialog of a guided start-up."""
+
+    def __init__(self, drawn: Callable[[Picture], Group], dialog: Dialog | None):
+        self._drawn, self._dialog = drawn, dialog
+        self._keyboard = Keyboard(sys.stdin.fileno()) if dialog is not None else None
+        # The screen wraps long lines; the console that prints on leaves that to the terminal.
+        self._live = Live(console=Console(), screen=True, auto_refresh=False)
+        self._last = 0.0
+
+    def __enter__(self) -> _Screen:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._live.stop()
 
     def __call__(self, picture: Picture) -> None:
+        if self._dialog is not None and self._keyboard is not None and not self._dialog.over:
+            self._dialog.look(picture, self._keyboard.line())
+            return
         now = time.monotonic()
-        if now - self._last >= self._period_s:
+        if now - self._last >= _DRAW_S:
             self._last = now
-            self._call(picture)
+            self._live.start()
+            self._live.update(self._drawn(picture), refresh=True)
 
 
 class _Lines:

@@ -151,6 +151,10 @@ class Supervisor:
         else:
             self._handovers.begin(self.picture.processes[name])
 
+    def command(self, command: str) -> None:
+        """Give the robot a command in the operator's place; a BusError says that the run does not go on."""
+        self._desk.command(command)
+
     def note(self, words: str) -> None:
         """Say something on the display and in the supervisor's log."""
         self.picture.notes.append(words)

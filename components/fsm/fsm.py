@@ -23,7 +23,7 @@ from surefoot.config.robot import JOINT_NAMES
 DIRECTIONS = {"forward": (1.0, 0.0), "backward": (-1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}
 """Commanded directions in the base frame."""
 
-COMMANDS = (*DIRECTIONS, "stand", "sit", "stop", "damp", "cut")
+COMMANDS = (*DIRECTIONS, "hold", "stand", "sit", "stop", "damp", "cut")
 """Everything an operator may ask for."""
 
 _CUT = "cut by command"
@@ -34,6 +34,7 @@ class Posture(StrEnum):
     """States outside Fig. 6."""
 
     DAMP = "DAMP"
+    HOLD = "HOLD"
     STAND_UP = "STAND_UP"
     STAND = "STAND"
     SIT_DOWN = "SIT_DOWN"
@@ -109,6 +110,8 @@ class Fsm(Component):
         elif now is None:
             self._wish = asked
             self._report("waiting", f"{command}: kept until there is a fresh state/estimate")
+        elif command == "hold":
+            self._hold(now)
         elif command == "sit":
             self._sit(now, asked)
         elif command == "stop":
@@ -122,9 +125,14 @@ class Fsm(Component):
 
     def _go(self, command: str, now: Observation) -> None:
         """stand or a direction: stand up first where need be."""
-        if self._posture in (Posture.DAMP, Posture.SIT_DOWN):
+        if self._posture is Posture.DAMP and self._settings.hold_s > 0.0:
+            self._wish = command
+            self._stiffen(now, f"commanded {command}")
+        elif self._posture in (Posture.DAMP, Posture.SIT_DOWN):
             self._wish = command
             self._move_joints(Posture.STAND_UP, self._stand_q, now, f"commanded {command}")
+        elif self._posture is Posture.HOLD:
+            self._wish = command  # obeyed once the gains are up
         elif self._posture is Posture.STAND_UP:
             self._wish = command
         elif command == "stand":
@@ -136,6 +144,12 @@ class Fsm(Component):
         else:
             self._wish = command
             self._cycle.stop(now, f"commanded {command}")
+
+    def _hold(self, now: Observation) -> None:
+        if self._posture is Posture.DAMP:
+            self._stiffen(now, "commanded hold")
+        else:
+            self._report("refused", "hold: the robot is not damped; command sit, or damp, first")
 
     def _sit(self, now: Observation, asked: str) -> None:
         """Settle from any state; a leg in the air is put down first."""
@@ -158,6 +172,8 @@ class Fsm(Component):
     def _advance(self, now: Observation, inbox: Inbox) -> None:
         if self._posture is Posture.STAND_UP and now.t >= self._joint_t1:
             self._stood_up(now)
+        elif self._posture is Posture.HOLD:
+            self._check_hold(now)
         elif self._posture is Posture.SIT_DOWN and now.t >= self._joint_t1:
             self._damp(self._reason.replace("commanded sit", "sitting"))
         elif self._posture is Posture.STAND:
@@ -190,11 +206,27 @@ class Fsm(Component):
             if self._cycle.state != State.RETURN_SAFE or self._cycle.waited_s(now) > self._settings.put_down_s:
                 self._sit_down(now, self._wish)
             return
-        rests = self._posture is not Posture.SIT_DOWN and self._posture is not Posture.STAND_UP and not walks
+        moves = self._posture in (Posture.HOLD, Posture.STAND_UP, Posture.SIT_DOWN)
+        rests = not moves and not walks
         if self._wish and rests and now.t >= self._cycle.reference.base_t1:
             wish, self._wish = self._wish, ""
             if wish != "stand" or self._posture is Posture.DAMP:
                 self._command(wish, now)
+
+    def _stiffen(self, now: Observation, reason: str) -> None:
+        """The joints are held where they are, by gains that come up in `hold_s`."""
+        self._joint_from = self._joint_to = now.estimate.q.copy()
+        self._joint_t0, self._joint_t1 = now.t, now.t + self._settings.hold_s
+        self._enter(Posture.HOLD, reason)
+
+    def _check_hold(self, now: Observation) -> None:
+        """A joint that is driven away, by a wrong sign or order, shows while the gains are still low."""
+        error = np.abs(now.estimate.q - self._joint_to)
+        worst, limit = int(np.argmax(error)), self._settings.hold_error
+        if error[worst] > limit:
+            self._damp(f"{JOINT_NAMES[worst]} left its hold by {error[worst]:.2f} rad, limit {limit} rad")
+        elif self._wish and now.t >= self._joint_t1:
+            self._move_joints(Posture.STAND_UP, self._stand_q, now, f"commanded {self._wish}")
 
     def _move_joints(self, posture: Posture, to: np.ndarray, now: Observation, reason: str) -> None:
         settings = self._settings

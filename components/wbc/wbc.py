@@ -86,17 +86,19 @@ class Wbc(Component):
         return JointCommand(t=t, valid=True, kd=np.full(12, self.deployment.hw.damping_kd), solver=why or "ok")
 
     def _posture(self, t: float, reference: MotionReference) -> JointCommand:
-        """JOINT mode: from one posture to another, at rest at both ends."""
+        """JOINT mode: from one posture to another, at rest at both ends; to the same one with gains that rise."""
         duration = max(reference.joint_t1 - reference.joint_t0, 1e-3)
         s = min(max((t - reference.joint_t0) / duration, 0.0), 1.0)
         change = reference.joint_to - reference.joint_from
+        stiff = 1.0 if change.any() else s
+        kd = self.deployment.hw.damping_kd * (1.0 - stiff) + self._settings.posture_kd * stiff
         return JointCommand(
             t=t,
             valid=True,
             q=reference.joint_from + s**3 * (10.0 - 15.0 * s + 6.0 * s * s) * change,
             dq=(30.0 * s * s * (1.0 - s) ** 2 / duration) * change,
-            kp=np.full(12, self._settings.posture_kp),
-            kd=np.full(12, self._settings.posture_kd),
+            kp=np.full(12, self._settings.posture_kp * stiff),
+            kd=np.full(12, kd),
             solver="ok",
         )
 

@@ -42,9 +42,9 @@ class Check(Enum):
     """
 
     # fmt: off
-    CUT = ("torque cut by a person (`Gate.cut`)", Answer.CUT, "", Latch.AT_ONCE,
-           "free the gate when nobody is near the robot")
-    STOP = ("damped by a person (`Gate.damp`)", Answer.DAMP, "", Latch.AT_ONCE, "")
+    CUT = ("torque cut by a person (`surefoot cut`)", Answer.CUT, "", Latch.AT_ONCE,
+           "when nobody is near the robot: command damp, then stand")
+    STOP = ("damped by a person (`surefoot stop`)", Answer.DAMP, "", Latch.AT_ONCE, "")
     TILT = ("tilt of the trunk, by gyroscope and accelerometer", Answer.DAMP, "hw.gate.tilt_max", Latch.AT_ONCE,
             "set the robot upright")
     POWER = ("power of all motors: 6 more cycles above the limit than below", Answer.DAMP, "hw.gate.power",

@@ -24,6 +24,7 @@ FLAT = deployment_file("flat")
         "network.listen=tls/0.0.0.0:7448",
         "network.address=dog.local",
         "network.host=operator",
+        "doctor.tilt_max=0.2",
     ],
 )
 def test_what_is_a_machines_own_does_not_count(own):

@@ -40,6 +40,8 @@ from surefoot.tools.commands import topics
         (["press", "planks", "--force", "0.5", "--out", "map.png"], "--force 0.5: above 1 N"),
         (["press", "planks", "--force", "nan", "--out", "map.png"], "--force nan"),
         (["press", "planks", "--step", "0", "--out", "map.png"], "--step 0: allowed 0.002 to 0.2 m"),
+        (["doctor", "nowhere"], "no such file: nowhere"),
+        (["doctor", "flat", "--set", "doctor.motor_warm=90"], "motor_warm = 90.0 is above motor_hot = 75.0"),
         (["press", "nowhere", "--out", "map.png"], "no such file: nowhere"),
     ],
 )

@@ -228,6 +228,7 @@ def test_a_robot_damped_by_the_gate_is_told_with_the_gates_reason_and_who_is_beh
     ("state", "reason", "words"),
     [
         ("DAMP", "waiting for a command", "`surefoot command stand` or a direction gets it up"),
+        ("HOLD", "commanded hold", "is held where it lies: `surefoot command stand` gets it up"),
         ("DAMP", "the robot has fallen", "the robot is damped: the robot has fallen"),
         ("STAND", "stood up", "waits for a command: `surefoot command forward`"),
         ("STOPPED", "commanded stop", "the robot stands (commanded stop)"),

@@ -13,7 +13,7 @@ def add(commands: argparse._SubParsersAction) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser("command", help="command the robot of a running stack")
     parser.add_argument(
-        "command", help="stand, sit, forward, backward, left, right, stop (the walk, and stand), damp or cut"
+        "command", help="hold, stand, sit, forward, backward, left, right, stop (the walk, and stand), damp or cut"
     )
     add_bus_arguments(parser)
     parser.set_defaults(run=_run)

@@ -16,6 +16,10 @@ process is ended in order. A robot that finds no safe foothold goes back to
 its last one and stands: on a terminal the run goes on and waits for `surefoot command backward` (or left,
 right, forward, stop) from another one; with --plain, or without a terminal, that ends the run.
 
+A real robot, or an emulated one, is examined first (`surefoot doctor`) and, on a terminal, brought up step by
+step: each motion is asked for, and n leaves it damped. Without a terminal, or with --plain, nothing is asked: it
+stays damped until `surefoot command stand`.
+
 With the simulated clock time waits for every process: the run may be slower than real time, and
 `surefoot restart NAME` goes on exactly where the process stood. With --set run.clock=monotonic it keeps real
 time; a machine that cannot solve the MPC fast enough says so and runs its light profile. A process that is

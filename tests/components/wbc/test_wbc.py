@@ -80,3 +80,16 @@ def test_a_swing_target_out_of_reach_asks_for_no_more_than_the_leg_has():
     for name in ("q", "dq", "tau", "force_W"):
         np.testing.assert_allclose(getattr(beyond, name), getattr(there, name), atol=1e-4, err_msg=name)
     assert np.abs(within.tau - there.tau).max() > 0.5
+
+
+def test_a_hold_comes_up_from_damping_and_a_way_between_two_postures_has_its_gains_at_once():
+    step, settings, damping_kd = Step(), Deployment().wbc, Deployment().hw.damping_kd
+    span = {"mode": ControlMode.JOINT, "joint_from": Q, "joint_t0": 0.0, "joint_t1": 1.0}
+    begun, half, up = (step(t, joint_to=Q, **span) for t in (0.0, 0.5, 1.5))
+    assert not begun.kp.any() and (begun.kd == damping_kd).all()
+    assert (half.kp == 0.5 * settings.posture_kp).all() and (
+        half.kd == 0.5 * (damping_kd + settings.posture_kd)
+    ).all()
+    assert (up.kp == settings.posture_kp).all() and (up.kd == settings.posture_kd).all()
+    assert all((command.q == Q).all() and not command.dq.any() for command in (begun, half, up))
+    assert (step(0.0, joint_to=Q + 0.1, **span).kp == settings.posture_kp).all()

@@ -1,0 +1,1 @@
+"""What can be checked without motion: the wire, the robot at rest, this machine."""

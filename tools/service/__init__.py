@@ -1,0 +1,1 @@
+"""A deployment as a service of this machine's systemd."""
