@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+import numpy as np
+
 from surefoot.bus.messages import DepthFrame, HardwareState
 from surefoot.bus.topics import CYCLE_HZ
 from surefoot.components.component import Component, Inbox, Outbox
@@ -15,6 +17,8 @@ from surefoot.hw.robot_interface import MotorLaw
 
 BACKENDS = {"mujoco": MujocoRobot, "aliengo": open_aliengo}
 """The robot interface behind each name of `hw.backend`."""
+
+_NO_FEET = np.zeros(0)
 
 
 class Io(Component):
@@ -55,6 +59,7 @@ class Io(Component):
                 acc_B=sensors.acc_B,
                 damping=self._gate.damping,
                 gate=self._gate.reason,
+                foot_force=_NO_FEET if sensors.foot_force is None else sensors.foot_force,
             ),
         )
         image = self.robot.depth()

@@ -35,6 +35,7 @@ class TimedState:
             acc_B=state.acc_B,
             t=self.t,
             temperature=state.temperature,
+            foot_force=state.foot_force,
         )
 
 
