@@ -17,7 +17,7 @@ class Hw:
 
     backend: Literal["mujoco", "aliengo"] = "mujoco"
     seed: Annotated[int, Within(0, 2**31)] = 0
-    start: Literal["standing", "lying"] = "standing"
+    start: Literal["standing", "lying", "hung"] = "standing"  # hung: the trunk is held in the air
     command_delay_s: Annotated[float, Within(0.0, 0.1)] = 0.004  # from command to motor
     torque_noise: Annotated[float, Within(0.0, 20.0)] = 0.5  # standard deviation of the torque estimate [N m]
     encoder_noise: Annotated[float, Within(0.0, 0.1)] = 1e-3  # of joint angles [rad]
