@@ -21,6 +21,7 @@ from surefoot.config.robot import GRAVITY, Robot, load_robot
 from surefoot.config.terrain import Terrain
 from surefoot.config.trajopt import Trajopt
 from surefoot.config.typed_toml import ConfigError, Within, build, ordered, read_toml, with_override
+from surefoot.config.unit import Unit, load_unit
 from surefoot.config.wbc import Wbc
 
 
@@ -71,6 +72,14 @@ class Deployment:
     def load_robot(self) -> Robot:
         """The figures of this deployment's robot."""
         return load_robot(self.robot)
+
+    def load_unit(self) -> Unit | None:
+        """What was measured of the robot itself; None without `hw.unit`.
+
+        Raises:
+            ConfigError: its file is missing or cannot be used.
+        """
+        return load_unit(self.hw.unit, self.robot) if self.hw.unit else None
 
     def _check_backend(self) -> None:
         """A real robot does not wait, and has no camera on its link."""

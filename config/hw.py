@@ -16,6 +16,7 @@ class Hw:
     """Backend and simulated plant. The seed draws every random figure."""
 
     backend: Literal["mujoco", "aliengo"] = "mujoco"
+    unit: str = ""  # file of `surefoot calibrate`, relative to the working directory: corrects the sensors
     seed: Annotated[int, Within(0, 2**31)] = 0
     start: Literal["standing", "lying", "hung"] = "standing"  # hung: the trunk is held in the air
     command_delay_s: Annotated[float, Within(0.0, 0.1)] = 0.004  # from command to motor

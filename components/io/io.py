@@ -11,9 +11,10 @@ from surefoot.bus.topics import CYCLE_HZ
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.config.deployment import Deployment
 from surefoot.hw.aliengo.backend import open_aliengo
+from surefoot.hw.calibrated_robot import CalibratedRobot
 from surefoot.hw.gate.gate import Gate
 from surefoot.hw.mujoco.backend import MujocoRobot
-from surefoot.hw.robot_interface import MotorLaw
+from surefoot.hw.robot_interface import MotorLaw, RobotInterface
 
 BACKENDS = {"mujoco": MujocoRobot, "aliengo": open_aliengo}
 """The robot interface behind each name of `hw.backend`."""
@@ -38,7 +39,9 @@ class Io(Component):
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
-        self.robot = BACKENDS[deployment.hw.backend](deployment)
+        unit = deployment.load_unit()
+        robot: RobotInterface = BACKENDS[deployment.hw.backend](deployment)
+        self.robot = robot if unit is None else CalibratedRobot(robot, unit)
         self._gate = Gate(deployment.load_robot(), deployment.hw)
         self._began: float | None = None
         self._cycles = 0

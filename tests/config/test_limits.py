@@ -12,6 +12,7 @@ import surefoot.config.deployment as deployment_module
 from surefoot.config.deployment import Deployment, load_deployment
 from surefoot.config.robot import Robot, load_robot
 from surefoot.config.typed_toml import ConfigError, Within, build, to_table, with_override
+from surefoot.config.unit import Unit
 
 CONFIG = Path(deployment_module.__file__).parent
 
@@ -50,7 +51,7 @@ def table_of(assignments):
     return table
 
 
-@pytest.mark.parametrize("cls", [Deployment, Robot])
+@pytest.mark.parametrize("cls", [Deployment, Robot, Unit])
 def test_every_number_has_two_finite_limits(cls):
     found = list(numbers(cls, ""))
     bare = [path for path, limits in found if not isinstance(limits, Within)]

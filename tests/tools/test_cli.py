@@ -16,6 +16,7 @@ from surefoot.tools.commands import topics
         (["run", "flat", "--set", "hw.sed=3"], "did you mean hw.seed?"),
         (["run", "flat", "--set", "hw.friction_max=7"], "out of range, allowed 0 to 2"),
         (["run", "flat", "--set", "hw"], "section.key=value"),
+        (["run", "flat", "--set", "hw.unit=mine.toml"], "robot file mine.toml: no such file"),
         (["restart", "io"], "io holds robot and bus"),
         (["restart", "engine"], "processes that can be: estimator"),
         (["command", "jump"], "there are forward"),
