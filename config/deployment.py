@@ -9,6 +9,7 @@ from math import sqrt
 from pathlib import Path
 from typing import Annotated, Literal
 
+from surefoot.config.calibration import Calibration
 from surefoot.config.elevation_map import ElevationMap
 from surefoot.config.emulator import Emulator
 from surefoot.config.estimator import Estimator
@@ -60,6 +61,7 @@ class Deployment:
     fsm: Fsm = field(default_factory=Fsm)
     elevation_map: ElevationMap = field(default_factory=ElevationMap)
     emulator: Emulator = field(default_factory=Emulator)
+    calibration: Calibration = field(default_factory=Calibration)
 
     def __post_init__(self) -> None:
         robot = self.load_robot()

@@ -16,6 +16,7 @@ from surefoot.bus.errors import BusError, MessageError  # noqa: E402
 from surefoot.config.typed_toml import ConfigError  # noqa: E402
 from surefoot.tools.commands import (  # noqa: E402
     bench,
+    calibrate,
     child,
     command,
     emulator,
@@ -35,7 +36,7 @@ from surefoot.tools.commands import (  # noqa: E402
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
 COMMANDS = (
-    *(run, emulator, command, status, restart, child, topics, keys),
+    *(run, emulator, calibrate, command, status, restart, child, topics, keys),
     *(record, info, replay),
     *(eval, press, reproduce, faults, bench),
 )

@@ -40,6 +40,10 @@ from surefoot.tools.commands import topics
         (["press", "planks", "--force", "0.5", "--out", "map.png"], "--force 0.5: above 1 N"),
         (["press", "planks", "--force", "nan", "--out", "map.png"], "--force nan"),
         (["press", "planks", "--step", "0", "--out", "map.png"], "--step 0: allowed 0.002 to 0.2 m"),
+        (["calibrate", "flat", "--hung", "--attitudes", "2", "--out", "unit.toml"], "--attitudes 2: 3 to 20"),
+        (["calibrate", "flat", "--hung", "--level-floor", "--out", "unit.toml"], "--level-floor: with --standing"),
+        (["calibrate", "flat", "--hung", "--out", "{tmp}/none/unit.toml"], "there is no folder"),
+        (["calibrate", "flat", "--standing", "--namespace", "nobody", "--out", "{tmp}/unit.toml"], "nobody"),
         (["press", "nowhere", "--out", "map.png"], "no such file: nowhere"),
     ],
 )
