@@ -69,6 +69,9 @@ class HardwareState(Message):
     acc_B: np.ndarray = array(3, doc="accelerometer: specific force, +g upwards at rest", unit="m/s^2")
     damping: bool = flag("the command gate damps in this cycle")
     gate: str = text("why the gate damps or limits; empty when it does not")
+    foot_force: np.ndarray = array(
+        -1, doc="of foot sensors FL, FR, RL, RR: raw, in newtons by hw.unit; empty without; no controller reads it"
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -9,6 +9,7 @@ from math import sqrt
 from pathlib import Path
 from typing import Annotated, Literal
 
+from surefoot.config.calibration import Calibration
 from surefoot.config.doctor import Doctor
 from surefoot.config.elevation_map import ElevationMap
 from surefoot.config.emulator import Emulator
@@ -23,6 +24,7 @@ from surefoot.config.robot import GRAVITY, Robot, load_robot
 from surefoot.config.terrain import Terrain
 from surefoot.config.trajopt import Trajopt
 from surefoot.config.typed_toml import ConfigError, Within, build, ordered, read_toml, with_override
+from surefoot.config.unit import Unit, load_unit
 from surefoot.config.wbc import Wbc
 
 
@@ -63,6 +65,7 @@ class Deployment:
     elevation_map: ElevationMap = field(default_factory=ElevationMap)
     emulator: Emulator = field(default_factory=Emulator)
     doctor: Doctor = field(default_factory=Doctor)
+    calibration: Calibration = field(default_factory=Calibration)
 
     def __post_init__(self) -> None:
         robot = self.load_robot()
@@ -75,6 +78,14 @@ class Deployment:
     def load_robot(self) -> Robot:
         """The figures of this deployment's robot."""
         return load_robot(self.robot)
+
+    def load_unit(self) -> Unit | None:
+        """What was measured of the robot itself; None without `hw.unit`.
+
+        Raises:
+            ConfigError: its file is missing or cannot be used.
+        """
+        return load_unit(self.hw.unit, self.robot) if self.hw.unit else None
 
     def _check_backend(self) -> None:
         """A real robot does not wait, and has no camera on its link."""

@@ -16,8 +16,9 @@ class Hw:
     """Backend and simulated plant. The seed draws every random figure."""
 
     backend: Literal["mujoco", "aliengo"] = "mujoco"
+    unit: str = ""  # file of `surefoot calibrate`, relative to the working directory: corrects the sensors
     seed: Annotated[int, Within(0, 2**31)] = 0
-    start: Literal["standing", "lying"] = "standing"
+    start: Literal["standing", "lying", "hung"] = "standing"  # hung: the trunk is held in the air
     dry_run: bool = False  # all is computed and published, and the motors only damp
     command_delay_s: Annotated[float, Within(0.0, 0.1)] = 0.004  # from command to motor
     torque_noise: Annotated[float, Within(0.0, 20.0)] = 0.5  # standard deviation of the torque estimate [N m]

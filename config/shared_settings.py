@@ -11,6 +11,7 @@ from surefoot.config.typed_toml import to_table
 
 _OWN = {
     "run": ("command", "epoch_s", "log_dir", "solve_share_max", "cores_min"),
+    "hw": ("unit",),
     "network": ("host", "listen", "address", "keys_dir", "insecure"),
 }
 """Keys of each section that only the machine itself goes by."""

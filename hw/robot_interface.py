@@ -28,6 +28,7 @@ class Sensors:
     t: float | None = None  # when it was measured, on this machine's monotonic clock [s]; None: at this instant
     stop: Stop = ""  # what a person who is with the robot asks for now
     temperature: np.ndarray | None = None  # (12,) of the motors [deg C]; None: nobody measures it
+    foot_force: np.ndarray | None = None  # (4,) of feet FL, FR, RL, RR, raw or by hw.unit; None without sensors
 
 
 @dataclass(frozen=True)

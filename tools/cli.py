@@ -16,6 +16,7 @@ from surefoot.bus.errors import BusError, MessageError  # noqa: E402
 from surefoot.config.typed_toml import ConfigError  # noqa: E402
 from surefoot.tools.commands import (  # noqa: E402
     bench,
+    calibrate,
     child,
     command,
     cut,
@@ -40,7 +41,9 @@ from surefoot.tools.commands import (  # noqa: E402
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
 COMMANDS = (
-    *(run, emulator, doctor, service, command, stop, cut, heartbeat, status, restart, child, topics, keys),
+    *(run, command, stop, cut, heartbeat),
+    *(status, restart, child, topics, keys),
+    *(doctor, calibrate, service, emulator),
     *(record, info, replay),
     *(eval, press, reproduce, faults, bench),
 )

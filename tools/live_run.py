@@ -64,6 +64,8 @@ def live_run(
     console = Console(soft_wrap=True)
     overrides = list(overrides)
     deployment = load_deployment(config, overrides)
+    if deployment.network.at_hub:
+        deployment.load_unit()  # io's; a file that cannot be used is told before anything is started
     if reload and deployment.run.clock != "simulated":
         raise CallError(
             "--reload needs run.clock = 'simulated': in real time nothing waits for a process that is restarted"

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+import numpy as np
+
 from surefoot.bus.messages import DepthFrame, HardwareState
 from surefoot.bus.topics import CYCLE_HZ
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.io.operator_hand import OperatorHand
 from surefoot.config.deployment import Deployment
 from surefoot.hw.aliengo.backend import open_aliengo
+from surefoot.hw.calibrated_robot import CalibratedRobot
 from surefoot.hw.gate.gate import Gate
 from surefoot.hw.mujoco.backend import MujocoRobot
-from surefoot.hw.robot_interface import MotorLaw, Sensors
+from surefoot.hw.robot_interface import MotorLaw, RobotInterface, Sensors
 
 BACKENDS = {"mujoco": MujocoRobot, "aliengo": open_aliengo}
 """The robot interface behind each name of `hw.backend`."""
+
+_NO_FEET = np.zeros(0)
 
 
 class Io(Component):
@@ -36,7 +41,9 @@ class Io(Component):
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
-        self.robot = BACKENDS[deployment.hw.backend](deployment)
+        unit = deployment.load_unit()
+        robot: RobotInterface = BACKENDS[deployment.hw.backend](deployment)
+        self.robot = robot if unit is None else CalibratedRobot(robot, unit)
         self._gate = Gate(deployment.load_robot(), deployment.hw)
         self._hand = OperatorHand(self._gate, deployment.operator.settle_s)
         self.said = self._hand.said
@@ -60,6 +67,7 @@ class Io(Component):
                 acc_B=sensors.acc_B,
                 damping=damping,
                 gate=reason,
+                foot_force=_NO_FEET if sensors.foot_force is None else sensors.foot_force,
             ),
         )
         image = self.robot.depth()

@@ -38,6 +38,7 @@ class TimedState:
             t=self.t,
             stop=self.stop,
             temperature=state.temperature,
+            foot_force=state.foot_force,
         )
 
 

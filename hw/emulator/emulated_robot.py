@@ -28,7 +28,8 @@ CYCLE_S = 1.0 / CYCLE_HZ
 class EmulatedRobot:
     """Physics, delays and noise are the simulated robot's, limits and meanings those of `hw.aliengo`.
 
-    Attitude and foot forces in its packets are the simulator's truth: no driver passes them on to controllers.
+    Attitude and foot forces in its packets are the simulator's truth: no driver passes on the one, no controller
+    reads the other.
 
     Attributes:
         plant: the simulated robot behind it.

@@ -13,6 +13,7 @@ from surefoot.config.deployment import Deployment
 from surefoot.config.robot import LEGS
 from surefoot.hw.errors import HardwareFault
 from surefoot.hw.mujoco.depth_camera import DepthCamera
+from surefoot.hw.mujoco.hoist import HOIST_M, hang
 from surefoot.hw.mujoco.plant import draw_plant, stream
 from surefoot.hw.mujoco.scene import PHYSICS_DT, build_scene
 from surefoot.hw.robot_interface import DepthImage, MotorLaw, Sensors, damping_law
@@ -35,7 +36,8 @@ class MujocoRobot:
         robot = deployment.load_robot()
         settings = deployment.hw
         plant = draw_plant(robot, settings)
-        self.model, self.field = build_scene(deployment, plant.robot, plant.friction)
+        hoist = hang if settings.start == "hung" else None
+        self.model, self.field = build_scene(deployment, plant.robot, plant.friction, hoist)
         self.data = mujoco.MjData(self.model)
         self._plant, self._settings = plant, settings
         self._torque_limit = np.array(robot.per_joint("torque_limit"))
@@ -180,15 +182,15 @@ class MujocoRobot:
         self._body_contact = " ".join(sorted(set(touching))) if touching else ""
 
     def _spawn(self, robot, start: str) -> None:
-        """Put the robot at x = y = 0, its feet (or belly) on the surface z = 0."""
-        posture = robot.nominal.stand_q if start == "standing" else robot.nominal.lie_q
+        """Put the robot at x = y = 0, its feet (or belly) on the surface z = 0, or hung above it."""
+        posture = robot.nominal.lie_q if start == "lying" else robot.nominal.stand_q
         data = self.data
         data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
         data.qpos[7:19] = np.tile(posture, 4)
         mujoco.mj_kinematics(self.model, data)
         lowest = data.geom_xpos[self._foot_geoms, 2].min() - robot.foot.radius
         belly = -0.5 * robot.collision["trunk"].size[2]
-        data.qpos[2] = -min(lowest, belly)
+        data.qpos[2] = HOIST_M if start == "hung" else -min(lowest, belly)
         mujoco.mj_forward(self.model, data)
 
     def _settle(self) -> None:

@@ -12,6 +12,7 @@ import surefoot.config.deployment as deployment_module
 from surefoot.config.deployment import Deployment, load_deployment
 from surefoot.config.robot import Robot, load_robot
 from surefoot.config.typed_toml import ConfigError, Within, build, to_table, with_override
+from surefoot.config.unit import Unit
 
 CONFIG = Path(deployment_module.__file__).parent
 
@@ -50,7 +51,7 @@ def table_of(assignments):
     return table
 
 
-@pytest.mark.parametrize("cls", [Deployment, Robot])
+@pytest.mark.parametrize("cls", [Deployment, Robot, Unit])
 def test_every_number_has_two_finite_limits(cls):
     found = list(numbers(cls, ""))
     bare = [path for path, limits in found if not isinstance(limits, Within)]
@@ -204,6 +205,8 @@ TOGETHER = {
     "estimator.contact_off_n=12": r"estimator: contact_off_n = 12\.0 is above contact_on_n = 10\.0",
     "estimator.stance_rate=0.5": r"estimator: stance_rate = 0\.5 is above probing_rate = 0\.2",
     "estimator.tilt_start=0.5 estimator.position_limit=0.4": r"tilt_start = 0\.5 reaches position_limit = 0\.4",
+    "calibration.swing_hz=1": r"calibration: swing_rad = 0\.25 at swing_hz = 1\.0 .* 1\.57 rad/s: at most 1 rad/s",
+    "calibration.swing_rad=0.05": r"swing_rad = 0\.05 .* 0\.16 rad/s: at least three times slow_speed = 0\.1",
     "fsm.crawl_order=[0,0,0,0]": r"fsm: crawl_order = \[0, 0, 0, 0\]: name each of the legs 0 to 3 once",
     "fsm.step_min_m=0.1": r"fsm: step_min_m = 0\.1 is not below step_m = 0\.1",
     "fsm.leg_length_plan_m=0.472": r"fsm: leg_length_plan_m = 0\.472 is above leg_length_max_m = 0\.47",

@@ -16,6 +16,7 @@ from surefoot.tools.commands import topics
         (["run", "flat", "--set", "hw.sed=3"], "did you mean hw.seed?"),
         (["run", "flat", "--set", "hw.friction_max=7"], "out of range, allowed 0 to 2"),
         (["run", "flat", "--set", "hw"], "section.key=value"),
+        (["run", "flat", "--set", "hw.unit=mine.toml"], "robot file mine.toml: no such file"),
         (["restart", "io"], "io holds robot and bus"),
         (["restart", "engine"], "processes that can be: estimator"),
         (["command", "jump"], "there are forward"),
@@ -42,6 +43,10 @@ from surefoot.tools.commands import topics
         (["press", "planks", "--step", "0", "--out", "map.png"], "--step 0: allowed 0.002 to 0.2 m"),
         (["doctor", "nowhere"], "no such file: nowhere"),
         (["doctor", "flat", "--set", "doctor.motor_warm=90"], "motor_warm = 90.0 is above motor_hot = 75.0"),
+        (["calibrate", "flat", "--hung", "--attitudes", "2", "--out", "unit.toml"], "--attitudes 2: 3 to 20"),
+        (["calibrate", "flat", "--hung", "--level-floor", "--out", "unit.toml"], "--level-floor: with --standing"),
+        (["calibrate", "flat", "--hung", "--out", "{tmp}/none/unit.toml"], "there is no folder"),
+        (["calibrate", "flat", "--standing", "--namespace", "nobody", "--out", "{tmp}/unit.toml"], "nobody"),
         (["press", "nowhere", "--out", "map.png"], "no such file: nowhere"),
     ],
 )

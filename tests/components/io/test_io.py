@@ -46,7 +46,7 @@ def test_every_cycle_says_what_the_sensors_and_the_gate_saw():
     published = run(Io(Deployment()), 3, hold)
     assert [key for key, _ in published] == ["hw/state", "sim/truth"] * 3
     state = published[-2][1]
-    assert state.t == 0.004 and state.valid and not state.damping
+    assert state.t == 0.004 and state.valid and not state.damping and state.foot_force.shape == (0,)
 
 
 def test_without_a_controller_the_robot_damps_and_says_why():

@@ -56,6 +56,7 @@ def test_a_state_has_the_time_at_which_it_was_measured():
         measured = io.robot.newest.t
         assert 0.0 <= state.t <= measured - begin < 60.0
         np.testing.assert_allclose(state.q, robot.state.q, atol=1e-6)
+        np.testing.assert_array_equal(state.foot_force, robot.state.foot_force)
 
 
 def test_with_an_emulator_that_waits_a_state_has_the_time_of_its_step_and_costs_one_packet():

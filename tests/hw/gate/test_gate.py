@@ -120,7 +120,9 @@ def test_a_cut_leaves_no_torque_at_all_until_it_is_freed_and_then_damps_until_to
     for make in (at, lambda t: at(t, **DAMPING), lambda t: None):
         law = gate.law(make(0.1), STILL, 0.1)
         assert gate.damping and not any(getattr(law, name).any() for name in LAW)
-        assert gate.reason.startswith("torque is cut (button A): when nobody is near the robot: command damp, then stand")
+        assert gate.reason.startswith(
+            "torque is cut (button A): when nobody is near the robot: command damp, then stand"
+        )
     gate.damp("button B")
     assert not gate.safe_law.kd.any()
     gate.free()

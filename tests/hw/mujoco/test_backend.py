@@ -9,7 +9,7 @@ from surefoot.config.deployment import Deployment
 from surefoot.config.hw import Hw
 from surefoot.config.robot import GRAVITY, load_robot
 from surefoot.hw.mujoco.backend import MujocoRobot
-from surefoot.hw.robot_interface import MotorLaw
+from surefoot.hw.robot_interface import MotorLaw, damping_law
 
 ROBOT = load_robot("aliengo")
 STAND_Q = np.tile(ROBOT.nominal.stand_q, 4)
@@ -56,6 +56,14 @@ def test_lying_it_rests_on_its_belly():
     for _ in range(250):
         machine.advance()
     assert 0.04 < machine.truth().p_WB[2] < 0.12
+
+
+def test_hung_its_trunk_stays_and_its_legs_sink_into_the_air():
+    machine = robot(start="hung")
+    before, after = machine.truth(), run(machine, 1000, damping_law(3.0))
+    np.testing.assert_allclose(after.p_WB, before.p_WB, atol=1e-3)
+    assert np.abs(after.omega_WB_B).max() < 1e-3 and not after.force_W.any()
+    assert (after.p_WF[:, 2] > 0.4).all() and np.abs(after.q - STAND_Q).max() > 0.05
 
 
 @pytest.mark.parametrize("delay_s", [0.0, 0.004])
