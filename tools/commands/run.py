@@ -68,8 +68,17 @@ def add(commands: argparse._SubParsersAction) -> None:
 
 
 def _run(call: argparse.Namespace) -> int:
-    from surefoot.tools.live_run import live_run
+    from surefoot.tools.live_run import RunCall, live_run
 
-    overrides = [*call.set, f"network.host={call.host}"] if call.host else call.set
-    file = deployment_file(call.config)
-    return live_run(file, overrides, call.seconds, call.plain, call.reload, call.record, call.beat)
+    host = [f"network.host={call.host}"] if call.host else []
+    return live_run(
+        RunCall(
+            config=deployment_file(call.config),
+            overrides=(*call.set, *host),
+            seconds=call.seconds,
+            plain=call.plain,
+            reload=call.reload,
+            record=call.record,
+            beats=call.beat,
+        )
+    )
