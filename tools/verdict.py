@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from surefoot.hw.gate.gate import FREED_BY
 from surefoot.tools.picture import Picture
 
 _CROSSED = {"planks": "platform crossed", "slope": "platform crossed"}
 """What is said of a far side that has a name of its own."""
+
+_AT_REST = ("DAMP", "HOLD", "SIT_DOWN")
+"""States in which the robot is not meant to stand: a person has seen to it, or has not begun."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +36,7 @@ def verdict(picture: Picture, terrain: str, seconds: float, interactive: bool) -
 
     The run is over when the goal is reached, the robot has fallen, lost its estimate or been damped by a person,
     or `seconds` of its time have passed (0: no limit). A robot that found no safe foothold stands and waits for a
-    person; where there is none, that ends the run too.
+    person, one whose gate has latched lies and does; where there is none, that ends the run too.
 
     Args:
         picture: what has been heard.
@@ -66,4 +70,7 @@ def verdict(picture: Picture, terrain: str, seconds: float, interactive: bool) -
         advice = "`surefoot command backward` takes the robot back, left or right around, forward tries again"
         stopped = f"the robot stopped: {reference.reason}"
         return Verdict(stopped, over=not interactive, good=terrain == "trap", advice=advice)
+    hardware = picture.hardware
+    if reference.state not in _AT_REST and hardware is not None and hardware.damping and FREED_BY in hardware.gate:
+        return Verdict(f"the gate damps the robot: {hardware.gate}", over=not interactive, advice=FREED_BY)
     return Verdict()

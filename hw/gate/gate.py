@@ -15,6 +15,9 @@ from surefoot.hw.gate.sensor_watch import SensorWatch
 from surefoot.hw.gate.tilt_watch import TiltWatch
 from surefoot.hw.robot_interface import MotorLaw, Sensors, damping_law
 
+FREED_BY = "command sit, or damp, then stand"
+"""What a person does about a latch; it is part of every reason of one."""
+
 _ORDER = {check: place for place, check in enumerate(Check)}
 _ROUNDING_S = 1e-9  # of times that are whole cycles
 
@@ -151,4 +154,4 @@ class Gate:
         if self._is_cut:
             return f"{latched}{others}"
         how = "stopped" if latched.check.latch is Latch.AT_ONCE else "damped too long to go on"
-        return f"{how} ({latched}): command sit, or damp, then stand{others}"
+        return f"{how} ({latched}): {FREED_BY}{others}"

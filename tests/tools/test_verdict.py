@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from surefoot.bus.messages import MotionReference
+from surefoot.bus.messages import HardwareState, MotionReference
+from surefoot.hw.gate.gate import FREED_BY
 from surefoot.tools.picture import Picture
 from surefoot.tools.verdict import verdict
 
@@ -63,3 +64,17 @@ def test_a_stop_waits_for_a_person_where_there_is_one():
 def test_to_stop_in_a_trap_is_what_the_robot_should_do():
     stop = {"state": "STOPPED", "reason": "no safe foothold among the alternatives"}
     assert judged(terrain="trap", **stop).good and not judged(terrain="rocks", **stop).good
+
+
+def test_a_gate_that_has_latched_waits_for_a_person_where_there_is_one():
+    hardware = HardwareState(damping=True, gate=f"damped too long to go on (wbc is away): {FREED_BY}")
+
+    def lies(state, interactive, gate=hardware):
+        picture = Picture(reference=MotionReference(t=5.0, state=state), hardware=gate)
+        return verdict(picture, "planks", 0.0, interactive)
+
+    assert lies("RETURN_SAFE", interactive=False).over and not lies("RETURN_SAFE", interactive=True).over
+    assert "wbc is away" in lies("RETURN_SAFE", interactive=True).reason
+    assert not lies("DAMP", interactive=False).over, "a person has seen to it"
+    passes_over = replace(hardware, gate="command is 60 ms old, limit 50 ms: is wbc running?")
+    assert not lies("RETURN_SAFE", interactive=False, gate=passes_over).over

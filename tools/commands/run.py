@@ -14,7 +14,8 @@ The run ends when the goal is reached (on the planks: the platform is crossed), 
 its estimate or is damped with `surefoot command damp`, after --for seconds of its time, or with Ctrl-C; then every
 process is ended in order. A robot that finds no safe foothold goes back to
 its last one and stands: on a terminal the run goes on and waits for `surefoot command backward` (or left,
-right, forward, stop) from another one; with --plain, or without a terminal, that ends the run.
+right, forward, stop) from another one; with --plain, or without a terminal, that ends the run. So it is with a
+robot whose safety gate has latched: it lies, and waits for `surefoot command sit`, then `stand`.
 
 A real robot, or an emulated one, is examined first (`surefoot doctor`) and, on a terminal, brought up step by
 step: each motion is asked for, and n leaves it damped. Without a terminal, or with --plain, nothing is asked: it
