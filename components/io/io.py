@@ -45,7 +45,7 @@ class Io(Component):
         outbox.publish(
             "hw/state",
             HardwareState(
-                t=t if sensors.t is None else sensors.t - self.deployment.run.epoch_s,
+                t=t - sensors.age_s if sensors.t is None else sensors.t - self.deployment.run.epoch_s,
                 valid=True,
                 q=sensors.q,
                 dq=sensors.dq,

@@ -18,7 +18,7 @@ from surefoot.hw.robot_interface import Sensors
 
 @dataclass(frozen=True)
 class TimedState:
-    """A state and when it was measured, on this machine's monotonic clock [s]."""
+    """A state and when it was measured, on the clock on which states arrive [s]."""
 
     t: float
     state: AliengoState
@@ -40,10 +40,10 @@ class StateFeed:
         clock: of the robot's tick.
     """
 
-    def __init__(self, settings: Aliengo, plausibility: Plausibility, recorder: LinkRecorder):
+    def __init__(self, settings: Aliengo, plausibility: Plausibility, recorder: LinkRecorder, clock: TickClock):
         self._generation = GENERATIONS[settings.generation]
         self._reading, self._plausibility, self._recorder = settings.reading, plausibility, recorder
-        self.clock = TickClock(settings.tick_unit)
+        self.clock = clock
         self.newest: TimedState | None = None
 
     def take(self, packets: Iterable[bytes], arrived: float) -> bool:
@@ -51,7 +51,7 @@ class StateFeed:
 
         Args:
             packets: in order of arrival.
-            arrived: on the monotonic clock [s].
+            arrived: when [s].
 
         Returns:
             Whether there is a newer state.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import asin, atan2
 
@@ -19,7 +20,8 @@ from surefoot.hw.aliengo.tick_clock import UNITS_S
 from surefoot.hw.emulator.broken_parts import BrokenParts
 from surefoot.hw.emulator.motors import Motors
 from surefoot.hw.errors import PacketError
-from surefoot.hw.mujoco.backend import MujocoRobot
+from surefoot.hw.mujoco.backend import STEPS_PER_CYCLE, MujocoRobot
+from surefoot.hw.mujoco.scene import PHYSICS_DT
 
 CYCLE_S = 1.0 / CYCLE_HZ
 """By which the robot's time goes on at once [s]."""
@@ -74,13 +76,20 @@ class EmulatedRobot:
             return None
         return encode_state(self._state, self._generation, self._reading)[0]
 
-    def advance(self) -> None:
+    def advance(self, arrive: Callable[[float], None] = lambda t: None) -> None:
         """Go on by a cycle.
+
+        Args:
+            arrive: called with the time of each physics step [s], to take the commands that have come by then;
+                the motors follow them from that step on.
 
         Raises:
             HardwareFault: the physics diverged.
         """
-        self.plant.write(self._motors.law(self.t))
+        for step in range(STEPS_PER_CYCLE):
+            t = self.t + step * PHYSICS_DT
+            arrive(t)
+            self.plant.write(self._motors.law(t), step)
         self.plant.advance()
         self._motors.warm(self.plant.truth().tau, CYCLE_S)
         self._cycles += 1

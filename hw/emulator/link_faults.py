@@ -10,6 +10,9 @@ import numpy as np
 
 from surefoot.config.emulator import Wire
 
+_SAME_S = 1e-9
+"""Times that are closer are one: a number of cycles and a latency do not add up to the last digit."""
+
 
 class Packet(NamedTuple):
     """A packet and whose it is: who sent it, or who is to get it."""
@@ -49,7 +52,7 @@ class LinkFaults:
     def due(self, t: float) -> list[Packet]:
         """What has arrived by time `t` [s] and was not taken before, in order of arrival."""
         arrived = []
-        while self.next_t <= t:
+        while self.next_t <= t + _SAME_S:
             arrived.append(heapq.heappop(self._held)[2])
         return arrived
 

@@ -11,6 +11,7 @@ from surefoot.hw.aliengo.generation import G0, G1
 from surefoot.hw.aliengo.link_statistics import LinkRecorder
 from surefoot.hw.aliengo.state_feed import StateFeed
 from surefoot.hw.aliengo.state_packet import encode_state
+from surefoot.hw.aliengo.tick_clock import TickClock
 
 STATE = drawn_state(np.random.default_rng(12))
 
@@ -32,7 +33,7 @@ def recorder():
 
 @pytest.fixture
 def feed(recorder):
-    return StateFeed(Aliengo(tick_unit="none"), PLAUSIBILITY, recorder)
+    return StateFeed(Aliengo(), PLAUSIBILITY, recorder, TickClock("none"))
 
 
 def counts(recorder):

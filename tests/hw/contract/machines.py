@@ -91,8 +91,6 @@ class InLockstep(Simulated):
 
     def close(self):
         self.robot.close()
-        while self._emulation.robot.commands <= self.robot.statistics.commands:  # until the last one is heard
-            sleep(0.001)
         self._emulation.switch_off()
 
     def step_plant(self):
@@ -104,6 +102,12 @@ class InLockstep(Simulated):
 
 class ByTimer(InLockstep):
     """The real robot's driver, whose thread sends a command in every cycle, with the same emulator."""
+
+    def close(self):
+        self.robot.close()
+        while self._emulation.robot.commands <= self.robot.statistics.commands:  # until the last one is heard
+            sleep(0.001)
+        self._emulation.switch_off()
 
     def run(self, cycles, law=None):
         """The same at the least: as many commands after those that are on their way, which each take a cycle."""
