@@ -18,6 +18,7 @@ from surefoot.tools.commands import (  # noqa: E402
     bench,
     child,
     command,
+    emulated,
     emulator,
     eval,
     faults,
@@ -35,7 +36,7 @@ from surefoot.tools.commands import (  # noqa: E402
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
 COMMANDS = (
-    *(run, emulator, command, status, restart, child, topics, keys),
+    *(run, emulator, emulated, command, status, restart, child, topics, keys),
     *(record, info, replay),
     *(eval, press, reproduce, faults, bench),
 )

@@ -8,6 +8,7 @@ from math import asin, atan2
 
 import numpy as np
 
+from surefoot.bus.messages import SimTruth
 from surefoot.bus.topics import CYCLE_HZ
 from surefoot.config.deployment import Deployment
 from surefoot.hw.aliengo.aliengo_state import AliengoState
@@ -19,6 +20,7 @@ from surefoot.hw.aliengo.state_packet import encode_state
 from surefoot.hw.aliengo.tick_clock import UNITS_S
 from surefoot.hw.emulator.broken_parts import BrokenParts
 from surefoot.hw.emulator.motors import Motors
+from surefoot.hw.emulator.witness import Witness
 from surefoot.hw.errors import PacketError
 from surefoot.hw.mujoco.backend import STEPS_PER_CYCLE, MujocoRobot
 from surefoot.hw.mujoco.scene import PHYSICS_DT
@@ -34,6 +36,7 @@ class EmulatedRobot:
 
     Attributes:
         plant: the simulated robot behind it.
+        witness: of what truly becomes of it.
         commands: how many it has followed.
         refused: how many it has not, for they were damaged or no commands.
         trouble: in words what was last amiss with one.
@@ -51,7 +54,8 @@ class EmulatedRobot:
         self._cycles = 0
         self.commands = self.refused = 0
         self.trouble = ""
-        self._state = self._measured()
+        self.witness = Witness(self.plant.field.end_x + robot.foot.radius)
+        self._state = self._measured(self.plant.truth())
 
     @property
     def t(self) -> float:
@@ -91,12 +95,14 @@ class EmulatedRobot:
             arrive(t)
             self.plant.write(self._motors.law(t), step)
         self.plant.advance()
-        self._motors.warm(self.plant.truth().tau, CYCLE_S)
+        truth = self.plant.truth()
+        self._motors.warm(truth.tau, CYCLE_S)
         self._cycles += 1
-        self._state = self._with_stuck_parts(self._measured())
+        self.witness.see(truth, self.t)
+        self._state = self._with_stuck_parts(self._measured(truth))
 
-    def _measured(self) -> AliengoState:
-        sensors, truth = self.plant.read(), self.plant.truth()
+    def _measured(self, truth: SimTruth) -> AliengoState:
+        sensors = self.plant.read()
         return AliengoState(
             quat_WB=truth.quat_WB,
             omega_WB_B=sensors.omega_WB_B,
