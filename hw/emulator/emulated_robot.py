@@ -93,12 +93,13 @@ class EmulatedRobot:
         for step in range(STEPS_PER_CYCLE):
             t = self.t + step * PHYSICS_DT
             arrive(t)
-            self.plant.write(self._motors.law(t), step)
+            law = self._motors.law(t)
+            self.plant.write(law, step)
         self.plant.advance()
         truth = self.plant.truth()
-        self._motors.warm(truth.tau, CYCLE_S)
         self._cycles += 1
-        self.witness.see(truth, self.t)
+        self._motors.warm(truth.tau, CYCLE_S, self.t)
+        self.witness.see(truth, law, self.t)
         self._state = self._with_stuck_parts(self._measured(truth))
 
     def _measured(self, truth: SimTruth) -> AliengoState:

@@ -38,14 +38,15 @@ class LinkFaults:
     def send(self, packet: Packet, t: float) -> None:
         """Put a packet in at time `t` [s]."""
         settings = self._settings
+        bad = settings.bad_from_s <= t < settings.bad_until_s
         # Always as many figures, so that one setting never shifts what another draws.
         lost, doubled, held_back, damaged, *jitter = self._fate.random(6)
-        if lost < settings.loss:
+        if bad and lost < settings.loss:
             return
-        if damaged < settings.corrupt:
+        if bad and damaged < settings.corrupt:
             packet = packet._replace(data=self._damage(packet.data))
-        arrives = t + settings.latency_s + settings.reorder_s * (held_back < settings.reorder)
-        for share in jitter[: 1 + (doubled < settings.duplicate)]:
+        arrives = t + settings.latency_s + settings.reorder_s * (bad and held_back < settings.reorder)
+        for share in jitter[: 1 + (bad and doubled < settings.duplicate)]:
             heapq.heappush(self._held, (arrives + settings.jitter_s * share, self._copies, packet))
             self._copies += 1
 

@@ -7,6 +7,7 @@ from math import acos
 import numpy as np
 
 from surefoot.bus.messages import SimTruth
+from surefoot.hw.robot_interface import MotorLaw
 
 _STANDS_M = 0.30
 """A trunk that is higher has been lifted; it stands at 0.4 m and lies at 0.1 m."""
@@ -25,19 +26,25 @@ class Witness:
         tilt: the largest of the trunk from the vertical, since then [rad].
         fell: in words how it fell, since then; empty while it has not. To lie down is to fall.
         crossed: all four feet have been past the end of the terrain at once.
+        damped_t: since when no motor has been driven [s]; None while one is.
     """
 
     def __init__(self, end_x: float):
         """`end_x`: where the terrain ends [m]."""
         self._end_x = end_x
         self.crossed = False
+        self.damped_t: float | None = 0.0
         self.forward_m = self.height_m = self.tilt = 0.0
         self.stood_t: float | None = None
         self.fell = ""
         self._begin: float | None = None
 
-    def see(self, truth: SimTruth, t: float) -> None:
-        """The truth at time `t` of the robot's clock [s]."""
+    def see(self, truth: SimTruth, law: MotorLaw, t: float) -> None:
+        """The truth at time `t` of the robot's clock [s], and the law that the motors have followed till then."""
+        if law.kp.any() or law.tau.any() or law.dq.any():
+            self.damped_t = None
+        elif self.damped_t is None:
+            self.damped_t = t
         x, _, self.height_m = truth.p_WB.tolist()
         self._begin = x if self._begin is None else self._begin
         self.forward_m = x - self._begin

@@ -7,8 +7,11 @@ import pytest
 
 from surefoot.bus.messages import SimTruth
 from surefoot.hw.emulator.witness import Witness
+from surefoot.hw.robot_interface import damping_law
 
 LIES = SimTruth(t=0.0, valid=True, p_WB=np.array([0.0, 0.0, 0.1]), quat_WB=np.eye(4)[0], body_contact="trunk")
+DAMPED = damping_law(3.0)
+DRIVEN = replace(DAMPED, kp=np.full(12, 100.0))
 STANDS = replace(LIES, p_WB=np.array([0.1, 0.0, 0.4]), body_contact="")
 
 
@@ -19,7 +22,7 @@ def leaning(angle):
 def witness(*truths, end_x=1.0):
     made = Witness(end_x)
     for n, truth in enumerate(truths):
-        made.see(truth, 0.5 * n)
+        made.see(truth, DRIVEN, 0.5 * n)
     return made
 
 
@@ -53,3 +56,11 @@ def test_it_has_crossed_once_all_feet_were_past_the_end():
     feet = np.array([[1.5, 0, 0], [1.5, 0, 0], [0.9, 0, 0], [1.1, 0, 0]], float)
     assert not witness(replace(STANDS, p_WF=feet)).crossed
     assert witness(replace(STANDS, p_WF=feet + [0.2, 0, 0]), STANDS).crossed
+
+
+def test_it_tells_since_when_no_motor_has_been_driven():
+    seen, told = Witness(1.0), []
+    for n, law in enumerate((DAMPED, DRIVEN, DAMPED, DAMPED, DRIVEN, DAMPED, DAMPED)):
+        seen.see(STANDS, law, float(n))
+        told.append(seen.damped_t)
+    assert told == [0.0, None, 2.0, 2.0, None, 5.0, 5.0]
