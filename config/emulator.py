@@ -54,11 +54,14 @@ class Motors:
         ordered(self, "ambient", "cooled", "a motor that has braked would never follow again")
 
 
+Kind = Literal["stuck encoder", "dead motor", "hot motor", "stuck imu", "stuck tick", "silent"]
+
+
 @dataclass(frozen=True)
 class Fault:
     """Something that breaks, and perhaps comes right again."""
 
-    kind: Literal["stuck encoder", "dead motor", "hot motor", "stuck imu", "stuck tick", "silent"]
+    kind: Kind
     joint: str = ""  # of an encoder or a motor
     begin_s: Time = 0.0  # of the robot's time
     end_s: Time = 1e5

@@ -30,6 +30,7 @@ from surefoot.tools.commands import (  # noqa: E402
     reproduce,
     restart,
     run,
+    soak,
     status,
     topics,
 )
@@ -38,7 +39,7 @@ from surefoot.tools.commands.call import CallError  # noqa: E402
 COMMANDS = (
     *(run, emulator, emulated, command, status, restart, child, topics, keys),
     *(record, info, replay),
-    *(eval, press, reproduce, faults, bench),
+    *(eval, press, reproduce, faults, bench, soak),
 )
 """In the order of the help."""
 
