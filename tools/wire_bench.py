@@ -35,9 +35,9 @@ def wire_bench(seconds: float = 5.0) -> dict[str, Any]:
         seconds: of wall time, for what depends on it.
 
     Returns:
-        `codec_us`: processor time of each encoder and decoder; `jitter_ms`: median and p99 of how far
-        the commands' distances are from 2 ms; `to_wire_ms`: median, p99 and maximum from `write` to the arrival at a socket of
-        this machine; `cpu_share` of a core that the driver takes; `commands` that have come.
+        `codec_us`: processor time of each encoder and decoder; `jitter_ms`: median and p99 of how far the
+        distances of commands are from 2 ms; `to_wire_ms`: median, p99 and maximum from `write` to the arrival at a
+        socket of this machine; `cpu_share` of a core that the driver takes; `commands` that have come.
     """
     deployment = Deployment()
     return {"codec_us": _codec(deployment)} | _exchange(deployment, seconds)
