@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from surefoot.config.aliengo import Aliengo
 from surefoot.config.depth_camera import DepthCamera
+from surefoot.config.gate import Gate
 from surefoot.config.typed_toml import Within, ordered
 
 
@@ -39,6 +40,7 @@ class Hw:
     solref_s: Annotated[float, Within(0.002, 0.1)] = (
         0.005  # time constant of contacts; soft defaults sink millimetres [s]
     )
+    gate: Gate = field(default_factory=Gate)
     depth: DepthCamera = field(default_factory=DepthCamera)
     aliengo: Aliengo = field(default_factory=Aliengo)
 

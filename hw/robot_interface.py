@@ -24,6 +24,7 @@ class Sensors:
     acc_B: np.ndarray  # (3,) specific force [m/s^2]
     t: float | None = None  # when it was measured, on this machine's monotonic clock [s]; None: `age_s` ago
     age_s: float = 0.0  # of a reading without a time, on a clock that waits for the robot [s]
+    temperature: np.ndarray | None = None  # (12,) of the motors [deg C]; None: nobody measures it
 
 
 @dataclass(frozen=True)

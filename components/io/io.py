@@ -9,9 +9,9 @@ from surefoot.bus.topics import CYCLE_HZ
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.config.deployment import Deployment
 from surefoot.hw.aliengo.backend import open_aliengo
-from surefoot.hw.gate import Gate
+from surefoot.hw.gate.gate import Gate
 from surefoot.hw.mujoco.backend import MujocoRobot
-from surefoot.hw.robot_interface import MotorLaw, damping_law
+from surefoot.hw.robot_interface import MotorLaw
 
 BACKENDS = {"mujoco": MujocoRobot, "aliengo": open_aliengo}
 """The robot interface behind each name of `hw.backend`."""
@@ -21,7 +21,7 @@ class Io(Component):
     """Reads, publishes, gates and writes, then lets the plant advance to the next cycle.
 
     Every command passes the gate in the cycle in which it is applied; a missing, stale or malformed one
-    makes that same cycle damp.
+    makes that same cycle damp, and so does a robot that is beyond its limits.
 
     Attributes:
         robot: the robot interface in use.
@@ -41,11 +41,12 @@ class Io(Component):
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         sensors = self.robot.read()
-        law = self._gate.law(inbox.latest("joint/command"), t)
+        measured_t = t - sensors.age_s if sensors.t is None else sensors.t - self.deployment.run.epoch_s
+        law = self._gate.law(inbox.latest("joint/command"), sensors, t, t - measured_t)
         outbox.publish(
             "hw/state",
             HardwareState(
-                t=t - sensors.age_s if sensors.t is None else sensors.t - self.deployment.run.epoch_s,
+                t=measured_t,
                 valid=True,
                 q=sensors.q,
                 dq=sensors.dq,
@@ -76,8 +77,8 @@ class Io(Component):
         self.trouble = "; ".join(words for words in (self._gate.reason, self.robot.trouble) if words)
 
     def deactivate(self, t: float, inbox: Inbox, outbox: Outbox) -> bool:
-        """The last command damps; then the robot is let go."""
-        self.robot.write(damping_law(self.deployment.hw.damping_kd))
+        """The last command damps, or leaves the torque cut; then the robot is let go."""
+        self.robot.write(self._gate.safe_law)
         self.robot.advance()
         self.robot.close()
         return True

@@ -28,7 +28,13 @@ class TimedState:
         """What of it every robot has."""
         state = self.state
         return Sensors(
-            q=state.q, dq=state.dq, tau=state.tau, omega_WB_B=state.omega_WB_B, acc_B=state.acc_B, t=self.t
+            q=state.q,
+            dq=state.dq,
+            tau=state.tau,
+            omega_WB_B=state.omega_WB_B,
+            acc_B=state.acc_B,
+            t=self.t,
+            temperature=state.temperature,
         )
 
 

@@ -16,6 +16,7 @@ from surefoot.hw.mujoco.scene import PHYSICS_DT, build_scene
 COLLAPSE_M = 0.03
 """Displacement that counts as collapse (Sec. II-D.5)."""
 
+_RISE_S = 0.100  # the force grows this slowly: at once, the momentum of what gives way breaks its neighbour too
 _PRESS_S = 0.100
 _SPHERE_MASS = 0.5  # light against the force, heavy enough for a stable contact [kg]
 _REST_S = 0.05  # the sphere settles on the surface before the press
@@ -52,7 +53,7 @@ class PressTest:
         self._feelers, self._heights = _underside(self._radius)
 
     def press(self, x: float, y: float, force_n: float) -> Press:
-        """Press down at (x, y) of the world with a force [N] for 100 ms.
+        """Press down at (x, y) of the world with a force [N] for 100 ms, once it has grown to that.
 
         Raises:
             ValueError: there is no ground.
@@ -65,8 +66,10 @@ class PressTest:
         for _ in range(round(_REST_S / PHYSICS_DT)):
             mujoco.mj_step(model, data)
         start, largest = data.qpos[-3:].copy(), 0.0
-        data.qfrc_applied[-1] = weight - force_n
-        for _ in range(round(_PRESS_S / PHYSICS_DT)):
+        rise = round(_RISE_S / PHYSICS_DT)
+        for step in range(rise + round(_PRESS_S / PHYSICS_DT)):
+            share = min(1.0, (step + 1) / rise)
+            data.qfrc_applied[-1] = weight - 1.0 - share * (force_n - 1.0)
             mujoco.mj_step(model, data)
             largest = max(largest, float(np.linalg.norm(data.qpos[-3:] - start)))
         return Press(largest)

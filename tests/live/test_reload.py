@@ -50,8 +50,8 @@ def test_a_change_restarts_what_is_made_of_it_and_a_fault_waits_for_the_next(sup
     live.wait(lambda: boots() == {"mpc": 1, "wbc": 2})
     live.go_on(0.2)
 
-    (tree / "hw/gate.py").open("a").write("# changed\n")
-    live.wait(lambda: "io goes on with what hw/gate.py said before" in live.said())
+    (tree / "hw/gate/gate.py").open("a").write("# changed\n")
+    live.wait(lambda: "io goes on with what hw/gate/gate.py said before" in live.said())
     live.go_on(0.2)
     assert live.stands() and live.asked()[1] == 0
     assert not any(status.bad_messages for status in live.status.values())

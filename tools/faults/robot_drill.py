@@ -14,7 +14,7 @@ from surefoot.components.component import Inbox, Outbox
 from surefoot.config.deployment import load_deployment
 from surefoot.hw.errors import HardwareFault
 from surefoot.tools.emulated_stack import EmulatedStack
-from surefoot.tools.faults.robot_fault import RobotFault, damped_within_cycles
+from surefoot.tools.faults.robot_fault import Declared, RobotFault, damped_within_cycles
 
 PHASES = {"standing": "stand", "swing": "forward"}
 """And the command that leads to each."""
@@ -48,17 +48,16 @@ class RobotResult:
 
 
 class RobotDrill:
-    """Faults of one deployment of an emulated robot in simulated time; each has a run of its own.
-
-    Attributes:
-        limit_cycles: as of `damped_within_cycles`.
-    """
+    """Faults of one deployment of an emulated robot in simulated time; each has a run of its own."""
 
     def __init__(self, config: Path, settings: Sequence[str] = ()):
         flat = ["terrain.kind=flat", "hw.aliengo.tick_unit=us"]
         self._deployment = load_deployment(config, [*flat, *settings])
         self._begin: dict[str, float] = {"standing": _STANDS_S}
-        self.limit_cycles = damped_within_cycles(self._deployment)
+
+    def limit_cycles(self, fault: RobotFault) -> int | None:
+        """Within which no motor may be driven any more; None where that is not declared."""
+        return damped_within_cycles(self._deployment, fault.declared)
 
     def carry_out(self, fault: RobotFault, phase: str) -> RobotResult:
         """Break it in a phase of `PHASES`."""
@@ -82,11 +81,10 @@ class RobotDrill:
         )
 
     def _good(self, fault: RobotFault, damped_after: int | None, fell: str) -> bool:
-        if fault.damps is None or not fault.heard:
-            return True
-        if fault.damps:
-            return damped_after is not None and damped_after <= self.limit_cycles
-        return damped_after is None and not fell
+        if fault.declared is Declared.GOES_ON:
+            return damped_after is None and not fell
+        limit = self.limit_cycles(fault)
+        return limit is None or (damped_after is not None and damped_after <= limit)
 
     @staticmethod
     def _let_go(stack: EmulatedStack) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from enum import Enum
 from math import ceil
 from typing import Any
 
@@ -15,6 +16,21 @@ Broken = Callable[[Emulator, float], Emulator]
 """The emulator's settings with something that breaks at a time [s]."""
 
 
+class Declared(Enum):
+    """What has to come of a fault, in the words of the page."""
+
+    GOES_ON = "goes on"
+    """The robot stays up and is driven."""
+    DAMPED = "damped at once"
+    """No motor is driven once a state has told of it and a command has come back."""
+    DAMPED_LATE = "damped when the newest state is too old"
+    """As above, after `hw.aliengo.stale_s` without a state."""
+    UNHEARD = "io ends; the robot hears of nothing"
+    """Nothing that is decided here reaches the robot."""
+    NOTHING = "–"
+    """Nobody looks for it."""
+
+
 @dataclass(frozen=True)
 class RobotFault:
     """One fault.
@@ -22,15 +38,12 @@ class RobotFault:
     Attributes:
         name: in words.
         broken: the settings with it.
-        damps: the motors must be damped in time; else the robot must stay up and be driven on. None: nobody looks
-            for it, so that nothing is declared.
-        heard: commands still reach the robot; if they do not, nothing that is decided here does.
+        declared: what has to come of it.
     """
 
     name: str
     broken: Broken
-    damps: bool | None
-    heard: bool = True
+    declared: Declared
 
 
 def part(kind: Kind, joint: str = "") -> Broken:
@@ -55,27 +68,32 @@ _SHUFFLE = {"reorder": 0.3, "reorder_s": 0.007}
 _NOTHING: dict[str, float] = {}
 
 FAULTS = (
-    RobotFault("silent robot", part("silent"), damps=True),
-    RobotFault("stuck tick", part("stuck tick"), damps=True),
-    RobotFault("every state lost", link(_NOTHING, {"loss": 1.0}), damps=True),
-    RobotFault("every command lost", link({"loss": 1.0}, _NOTHING), damps=False, heard=False),
-    RobotFault("both ways lost for 30 ms", link({"loss": 1.0}, {"loss": 1.0}, 0.030), damps=False),
-    RobotFault("nine of ten damaged for 30 ms", link(_DAMAGE, _DAMAGE, 0.030), damps=False),
-    RobotFault("every packet twice", link(_TWICE, _TWICE), damps=False),
-    RobotFault("three of ten 7 ms late", link(_SHUFFLE, _SHUFFLE), damps=False),
-    RobotFault("hot motor", part("hot motor", "RL_calf"), damps=None),
-    RobotFault("dead motor", part("dead motor", "RL_calf"), damps=None),
-    RobotFault("stuck encoder", part("stuck encoder", "RL_calf"), damps=None),
-    RobotFault("stuck IMU", part("stuck imu"), damps=None),
+    RobotFault("silent robot", part("silent"), Declared.DAMPED_LATE),
+    RobotFault("stuck tick", part("stuck tick"), Declared.DAMPED_LATE),
+    RobotFault("every state lost", link(_NOTHING, {"loss": 1.0}), Declared.DAMPED_LATE),
+    RobotFault("every command lost", link({"loss": 1.0}, _NOTHING), Declared.UNHEARD),
+    RobotFault("both ways lost for 30 ms", link({"loss": 1.0}, {"loss": 1.0}, 0.030), Declared.GOES_ON),
+    RobotFault("nine of ten damaged for 30 ms", link(_DAMAGE, _DAMAGE, 0.030), Declared.GOES_ON),
+    RobotFault("every packet twice", link(_TWICE, _TWICE), Declared.GOES_ON),
+    RobotFault("three of ten 7 ms late", link(_SHUFFLE, _SHUFFLE), Declared.GOES_ON),
+    RobotFault("hot motor", part("hot motor", "RL_calf"), Declared.DAMPED),
+    RobotFault("dead motor", part("dead motor", "RL_calf"), Declared.NOTHING),
+    RobotFault("stuck encoder", part("stuck encoder", "RL_calf"), Declared.NOTHING),
+    RobotFault("stuck IMU", part("stuck imu"), Declared.NOTHING),
 )
 """In the order of the page."""
 
 
-def damped_within_cycles(deployment: Deployment) -> int:
-    """From the first state that is missing until no motor is driven, in cycles of 2 ms.
+def damped_within_cycles(deployment: Deployment, declared: Declared) -> int | None:
+    """From the first state that tells of a fault, or is missing, until no motor is driven, in cycles of 2 ms.
 
-    The newest state has had its way, grows too old, and a cycle later io says so; then damping has its way.
+    The state has its way, where it is missing its predecessor grows too old, a cycle later io says so, and damping
+    has its way.
     """
+    if declared not in (Declared.DAMPED, Declared.DAMPED_LATE):
+        return None
     ways = (deployment.emulator.states, deployment.emulator.commands)
-    seconds = deployment.hw.aliengo.stale_s + sum(way.latency_s + way.jitter_s for way in ways)
+    seconds = sum(way.latency_s + way.jitter_s for way in ways)
+    if declared is Declared.DAMPED_LATE:
+        seconds += deployment.hw.aliengo.stale_s
     return ceil(seconds * CYCLE_HZ) + 2

@@ -36,13 +36,13 @@ def robot_page(
     return all(result.good for result in results)
 
 
-def results_page(results: list[RobotResult], limit: int) -> str:
-    """What came of faults, each in all phases; `limit` [cycles] of damping."""
+def results_page(results: list[RobotResult], limit: Callable[[RobotFault], int | None]) -> str:
+    """What came of faults, each in all phases; `limit`: of each, until it is damped [cycles]."""
     found = {(result.fault.name, result.phase): result for result in results}
     names = list(dict.fromkeys(result.fault.name for result in results))
     lines = [
-        f"Sources {source_digest()}. Watched for {AFTER_S:g} s; a cycle is 2 ms. Damped within {limit} cycles "
-        "where that is declared; **bold** is what did not go as declared.",
+        f"Sources {source_digest()}. Watched for {AFTER_S:g} s; a cycle is 2 ms; **bold** is what did not go as "
+        "declared.",
         "",
         "| fault | declared | " + " | ".join(PHASES) + " |",
         "|---|---|" + "---|" * len(PHASES),
@@ -50,16 +50,15 @@ def results_page(results: list[RobotResult], limit: int) -> str:
     for name in names:
         rows = [found[name, phase] for phase in PHASES]
         cells = [_cell(row) if row.good else f"**{_cell(row)}**" for row in rows]
-        lines.append(f"| {name} | {_declared(rows[0].fault)} | " + " | ".join(cells) + " |")
+        lines.append(f"| {name} | {_declared(rows[0].fault, limit)} | " + " | ".join(cells) + " |")
     said = {name: found[name, phase].told for phase in PHASES for name in names if found[name, phase].told}
     lines += ["", "What was read of it first:", ""]
     return "\n".join(lines + [f"- {name}: `{words}`" for name, words in said.items()]) + "\n"
 
 
-def _declared(fault: RobotFault) -> str:
-    if not fault.heard:
-        return "io ends; the robot hears of nothing"
-    return {True: "damped", False: "goes on", None: "–"}[fault.damps]
+def _declared(fault: RobotFault, limit: Callable[[RobotFault], int | None]) -> str:
+    cycles = limit(fault)
+    return fault.declared.value if cycles is None else f"{fault.declared.value}, within {cycles} cycles"
 
 
 def _cell(result: RobotResult) -> str:

@@ -1,5 +1,6 @@
 """The io component: sensors out, gated commands in, and never the truth to a controller."""
 
+from dataclasses import replace
 from typing import get_args, get_type_hints
 
 import numpy as np
@@ -67,6 +68,29 @@ def test_when_it_ends_the_robot_is_damped_and_closed():
     assert io.deactivate(0.1, Inbox(io.inputs), Outbox(io.outputs, lambda key, message: None))
     (last,) = closed
     assert not last.kp.any() and not last.tau.any() and (last.kd == Deployment().hw.damping_kd).all()
+
+
+def test_the_gate_sees_what_the_sensors_say_and_how_old_that_is():
+    io = Io(Deployment())
+    read = io.robot.read
+    run(io, 2, hold)
+    io.robot.read = lambda: replace(read(), temperature=np.full(12, 90.0))
+    state = run(io, 1, hold)[-2][1]
+    assert state.damping and state.gate.startswith("stopped (motor of FL_hip has 90 deg C, limit 80: let it cool)")
+    io.robot.read = lambda: replace(read(), t=-0.04)
+    assert "measurements are 40.0 ms old, limit 30 ms" in run(io, 1, hold)[-2][1].gate
+
+
+def test_a_robot_whose_torque_is_cut_is_left_without():
+    io = Io(Deployment())
+    run(io, 2, hold)
+    io._gate.cut("button A")
+    assert run(io, 1, hold)[-2][1].gate.startswith("torque is cut (button A)")
+    closed = []
+    io.robot.close = lambda: closed.append(io.robot._laws[-1][1])
+    io.deactivate(0.1, Inbox(io.inputs), Outbox(io.outputs, lambda key, message: None))
+    (last,) = closed
+    assert not last.kp.any() and not last.kd.any() and not last.tau.any()
 
 
 def test_the_cycles_missed_in_a_stall_are_made_up_and_none_with_a_command_too_old():

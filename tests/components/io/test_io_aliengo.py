@@ -1,6 +1,7 @@
 """The io component with the real robot's driver; a robot on 127.0.0.1 answers over real sockets."""
 
 from contextlib import contextmanager
+from dataclasses import replace
 from time import monotonic
 
 import numpy as np
@@ -12,10 +13,21 @@ from surefoot.components.io.io import Io
 from surefoot.config.aliengo import Aliengo
 from surefoot.config.deployment import Deployment, Run
 from surefoot.config.hw import Hw
+from surefoot.config.robot import load_robot
+
+STAND = np.tile(load_robot("aliengo").nominal.stand_q, 4)
 
 
 @contextmanager
 def io_of(robot, run, kp_max=500.0, **settings):
+    """The io of a robot that stands."""
+    still = {
+        "dq": np.zeros(12),
+        "tau": np.zeros(12),
+        "omega_WB_B": np.zeros(3),
+        "acc_B": np.array([0.0, 0.0, 9.8]),
+    }
+    robot.state = replace(robot.state, q=STAND, temperature=np.full(12, 30.0), **still)
     wire = {"address": "127.0.0.1", "port": robot.port, "local_port": 0, "first_answer_s": 60.0}
     hw = Hw(backend="aliengo", kp_max=kp_max, aliengo=Aliengo(**wire | settings))
     io = Io(Deployment(run=run, hw=hw))
@@ -64,12 +76,18 @@ def test_the_gate_and_the_link_both_say_what_is_amiss():
 
 
 def test_what_the_packet_cannot_hold_is_said_too():
-    command = JointCommand(
-        t=0.0, valid=True, q=np.tile([0.0, 0.9, -1.8], 4), kp=np.full(12, 1500.0), kd=np.ones(12)
-    )
+    command = JointCommand(t=0.0, valid=True, q=STAND, kp=np.full(12, 1500.0), kd=np.ones(12))
     with UdpRobot() as robot, io_of(robot, Run(), kp_max=2000.0, exchange="cycle") as io:
         step(io, 0.0, command)
         assert "law.kp of FR_hip = 1500 does not fit the packet: 1023.97 is sent" in io.trouble
+
+
+def test_a_robot_that_is_too_hot_to_go_on_is_damped():
+    with UdpRobot() as robot, io_of(robot, Run(), exchange="cycle") as io:
+        step(io, 0.0)
+        robot.state = replace(robot.state, temperature=np.full(12, 81.0))
+        step(io, 0.002)
+        assert "motor of FL_hip has 81 deg C, limit 80" in step(io, 0.004).gate
 
 
 def test_when_it_ends_the_robot_is_damped_and_the_link_closed():

@@ -47,6 +47,14 @@ def test_of_several_the_newest_is_kept(feed, recorder):
     assert feed.newest.state.tick == 3 and feed.newest.t == 5.0 and counts(recorder) == (3, 0, 0, 0, 0)
 
 
+def test_what_every_robot_has_is_told_with_its_time_and_the_motors_temperature(feed):
+    feed.take([packet(1)], 5.0)
+    sensors = feed.newest.sensors
+    assert sensors.t == 5.0
+    np.testing.assert_array_equal(sensors.temperature, STATE.temperature)
+    np.testing.assert_allclose(sensors.q, STATE.q, atol=1e-6)
+
+
 def test_repeats_and_what_was_overtaken_are_dropped(feed, recorder):
     feed.take([packet(7)], 1.0)
     assert not feed.take([packet(7), packet(6), packet(2**32 - 1)], 2.0)

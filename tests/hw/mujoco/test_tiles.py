@@ -62,6 +62,15 @@ def test_every_tile_flips_at_the_load_it_was_drawn_with():
         assert press.press(x, y, load_n + 2.0).collapsible
 
 
+@pytest.mark.parametrize("beside_m", [0.0, 0.005, 0.010])
+def test_where_two_tiles_meet_they_bear_the_sum_of_their_loads(beside_m):
+    all_alike = deployment(rows=3, columns=3, load_min_n=50.0, load_max_n=50.0)
+    press, model = PressTest(all_alike), build_scene(all_alike, None, 0.6)[0]
+    joint = 0.5 * (middle(model, "tile_1_1") + middle(model, "tile_2_1"))
+    assert not press.press(joint[0] + beside_m, joint[1], 95.0).collapsible
+    assert press.press(joint[0] + beside_m, joint[1], 105.0).collapsible
+
+
 def test_loads_fill_their_range_and_come_from_the_seed():
     drawn = np.array(list(loads(build_scene(deployment(), None, 0.6)[0]).values()))
     assert len(drawn) == TILES.rows * TILES.columns

@@ -28,7 +28,7 @@ def graph():
         ("components/robot_model/__init__.py", ALL - {"io"}),
         ("components/clock_master.py", {"io"}),
         ("components/stepper.py", ALL),
-        ("hw/gate.py", {"io"}),
+        ("hw/gate/gate.py", {"io"}),
         ("hw/mujoco/terrain/rocks.py", {"io"}),
         ("bus/codec.py", ALL),
         ("config/wbc.py", ALL),
