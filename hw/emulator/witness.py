@@ -24,7 +24,8 @@ class Witness:
         height_m: of the trunk now.
         stood_t: when it first stood, on the robot's clock [s]; None before.
         tilt: the largest of the trunk from the vertical, since then [rad].
-        fell: in words how it fell, since then; empty while it has not. To lie down is to fall.
+        fell: in words how it fell, since then; empty while it has not. A robot that is damped sinks to the ground:
+            that is no fall unless it topples. One that is driven to lie down cannot be told from one that falls.
         crossed: all four feet have been past the end of the terrain at once.
         damped_t: since when no motor has been driven [s]; None while one is.
     """
@@ -37,6 +38,7 @@ class Witness:
         self.forward_m = self.height_m = self.tilt = 0.0
         self.stood_t: float | None = None
         self.fell = ""
+        self._up = False
         self._begin: float | None = None
 
     def see(self, truth: SimTruth, law: MotorLaw, t: float) -> None:
@@ -48,16 +50,18 @@ class Witness:
         x, _, self.height_m = truth.p_WB.tolist()
         self._begin = x if self._begin is None else self._begin
         self.forward_m = x - self._begin
-        if self.stood_t is None and self.height_m > _STANDS_M and not truth.body_contact:
-            self.stood_t = t
+        if self.height_m > _STANDS_M and not truth.body_contact:
+            self._up, self.stood_t = True, t if self.stood_t is None else self.stood_t
         if self.stood_t is None or self.fell:
             return
         self.crossed = self.crossed or bool((truth.p_WF[:, 0] > self._end_x).all())
         self.tilt = max(self.tilt, _tilt(truth.quat_WB))
         if self.tilt > _FALL_TILT:
             self.fell = f"tilted by {self.tilt:.2f} rad at {t:.3f} s"
-        elif any(part in truth.body_contact for part in _BODY):
-            self.fell = f"touched the ground with {truth.body_contact} at {t:.3f} s"
+        elif self._up and any(part in truth.body_contact for part in _BODY):
+            self._up = False
+            if self.damped_t is None:
+                self.fell = f"touched the ground with {truth.body_contact} at {t:.3f} s"
 
     def __str__(self) -> str:
         if self.stood_t is None:

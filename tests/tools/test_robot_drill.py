@@ -32,9 +32,7 @@ def test_what_did_not_go_as_declared_is_bold_on_the_page():
         *(RobotResult(twice, phase, True, None, "upright", "") for phase in ("standing", "swing")),
     ]
     page = results_page(results, lambda fault: 32 if fault is silent else None)
-    assert (
-        "| silent robot | damped when the newest state is too old, within 32 cycles | damped after 31 cycles, upright | **driven on, upright** |"
-        in page
-    )
+    declared = "damped when the newest state is too old, within 32 cycles"
+    assert f"| silent robot | {declared} | damped after 31 cycles, upright | **driven on, upright** |" in page
     assert "| every packet twice | goes on | driven on, upright | driven on, upright |" in page
     assert "- silent robot: `io: no state`" in page

@@ -48,6 +48,16 @@ def test_a_fall_stays_a_fall(truth, said):
     assert witness(LIES, STANDS, truth, STANDS).fell == said
 
 
+def test_one_that_is_damped_sinks_and_may_get_up_again():
+    seen = Witness(1.0)
+    sunk = replace(STANDS, body_contact="trunk FL_thigh")
+    for n, (truth, law) in enumerate(((STANDS, DRIVEN), (sunk, DAMPED), (sunk, DRIVEN), (STANDS, DRIVEN))):
+        seen.see(truth, law, float(n))
+    assert seen.fell == ""
+    seen.see(sunk, DRIVEN, 4.0)
+    assert seen.fell == "touched the ground with trunk FL_thigh at 4.000 s"
+
+
 def test_a_calf_that_brushes_an_edge_is_no_fall():
     assert witness(STANDS, replace(STANDS, body_contact="RL_calf")).fell == ""
 
