@@ -67,9 +67,11 @@ class RobotDrill:
             ear = _Ear(begin)
             stack.listen(ear)
             stack.command(PHASES[phase])
+            ended = False
             try:
                 stack.run(begin + AFTER_S)
             except HardwareFault as error:
+                ended = True
                 ear.told = ear.told or f"io: {error}"
                 self._let_go(stack)
             witness = stack.robot.witness
@@ -77,18 +79,20 @@ class RobotDrill:
             damped_after = None if since is None else max(round((since - begin) * CYCLE_HZ), 0)
             outcome = witness.fell or "upright"
         return RobotResult(
-            fault, phase, self._good(fault, damped_after, witness.fell), damped_after, outcome, ear.told
+            fault, phase, self._good(fault, ended, damped_after, witness.fell), damped_after, outcome, ear.told
         )
 
-    def _good(self, fault: RobotFault, damped_after: int | None, fell: str) -> bool:
+    def _good(self, fault: RobotFault, ended: bool, damped_after: int | None, fell: str) -> bool:
         if fault.declared is Declared.GOES_ON:
             return damped_after is None and not fell
+        if fault.declared is Declared.UNHEARD:
+            return ended
         limit = self.limit_cycles(fault)
         return limit is None or (damped_after is not None and damped_after <= limit)
 
     @staticmethod
     def _let_go(stack: EmulatedStack) -> None:
-        """As the process of io does when a step has failed; then the plant goes on, damped."""
+        """As the process of io does when a step has failed: damp, in the cycles that a closing driver takes."""
         io = stack.io
         io.deactivate(stack.t, Inbox(io.inputs), Outbox(io.outputs, lambda key, message: None))
 
