@@ -26,6 +26,11 @@ class Wire:
     reorder_s: Annotated[float, Within(0.0, 1.0)] = 0.005  # for so long
     corrupt: Share = 0.0  # is damaged
     corrupt_bits: Annotated[int, Within(1, 1000)] = 3  # of a damaged one, drawn
+    bad_from_s: Time = 0.0  # of the robot's time: before and after, only latency and jitter are there
+    bad_until_s: Time = 1e5
+
+    def __post_init__(self) -> None:
+        ordered(self, "bad_from_s", "bad_until_s", "the link would never be bad")
 
 
 @dataclass(frozen=True)
@@ -50,11 +55,14 @@ class Motors:
         ordered(self, "ambient", "cooled", "a motor that has braked would never follow again")
 
 
+Kind = Literal["stuck encoder", "dead motor", "hot motor", "stuck imu", "stuck tick", "silent"]
+
+
 @dataclass(frozen=True)
 class Fault:
     """Something that breaks, and perhaps comes right again."""
 
-    kind: Literal["stuck encoder", "dead motor", "stuck imu", "stuck tick", "silent"]
+    kind: Kind
     joint: str = ""  # of an encoder or a motor
     begin_s: Time = 0.0  # of the robot's time
     end_s: Time = 1e5
@@ -69,7 +77,7 @@ class Fault:
     @property
     def of_joint(self) -> bool:
         """Whether it is of one joint, not of the whole robot."""
-        return self.kind in ("stuck encoder", "dead motor")
+        return self.kind in ("stuck encoder", "dead motor", "hot motor")
 
 
 @dataclass(frozen=True)

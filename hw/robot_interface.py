@@ -25,7 +25,8 @@ class Sensors:
     tau: np.ndarray  # (12,) motor torque estimates [N m]
     omega_WB_B: np.ndarray  # (3,) gyroscope [rad/s]
     acc_B: np.ndarray  # (3,) specific force [m/s^2]
-    t: float | None = None  # when it was measured, on this machine's monotonic clock [s]; None: at this instant
+    t: float | None = None  # when it was measured, on this machine's monotonic clock [s]; None: `age_s` ago
+    age_s: float = 0.0  # of a reading without a time, on a clock that waits for the robot [s]
     stop: Stop = ""  # what a person who is with the robot asks for now
     temperature: np.ndarray | None = None  # (12,) of the motors [deg C]; None: nobody measures it
     foot_force: np.ndarray | None = None  # (4,) of feet FL, FR, RL, RR, raw or by hw.unit; None without sensors

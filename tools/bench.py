@@ -21,6 +21,7 @@ from surefoot.config.deployment import Deployment, Run
 from surefoot.config.terrain import Terrain
 from surefoot.hw.mujoco.backend import MujocoRobot
 from surefoot.hw.robot_interface import MotorLaw
+from surefoot.tools import wire_bench
 from surefoot.tools.bus_bench import bus_bench, rows
 
 WARM_UP_S = 4.0
@@ -51,7 +52,7 @@ def bench(say: Callable[[str], None] = print) -> dict:
         each stage of an mpc tick; `trajopt_ms`: mean, median, maximum and number of solves; `image_ms` of the
         simulated depth camera and `map_ms` from an image to the map with it: median, p99 and maximum;
         `real_time_factor` of the whole stack; `references`: how many had a leg swing and how many one probe;
-        `bus` as of `bus_bench`.
+        `bus` as of `bus_bench`; `wire` as of `wire_bench`.
     """
     found: dict = {"calibration_ms": calibration_ms()}
     witness = _Witness()
@@ -59,6 +60,7 @@ def bench(say: Callable[[str], None] = print) -> dict:
     found["trajopt_ms"] = _trajopt(witness)
     found |= _sight()
     found["bus"] = bus_bench()
+    found["wire"] = wire_bench.wire_bench()
     _tell(found, say)
     return found
 
@@ -198,6 +200,8 @@ def _tell(found: dict, say: Callable[[str], None]) -> None:
     row("calibration [ms]", "", f"{found['calibration_ms']:6.2f}")
     for of_bus in rows(found["bus"], factor):
         row(*of_bus)
+    for of_wire in wire_bench.rows(found["wire"]):
+        row(*of_wire)
     row("median, p99, max of a tick [ms]", "", "")
     for name, times in found["step_ms"].items():
         row(f"  {name}", "", spread(times))

@@ -21,6 +21,7 @@ from surefoot.tools.commands import (  # noqa: E402
     command,
     cut,
     doctor,
+    emulated,
     emulator,
     eval,
     faults,
@@ -34,6 +35,7 @@ from surefoot.tools.commands import (  # noqa: E402
     restart,
     run,
     service,
+    soak,
     status,
     stop,
     topics,
@@ -43,9 +45,9 @@ from surefoot.tools.commands.call import CallError  # noqa: E402
 COMMANDS = (
     *(run, command, stop, cut, heartbeat),
     *(status, restart, child, topics, keys),
-    *(doctor, calibrate, service, emulator),
+    *(doctor, calibrate, service, emulator, emulated),
     *(record, info, replay),
-    *(eval, press, reproduce, faults, bench),
+    *(eval, press, reproduce, faults, bench, soak),
 )
 """In the order of the help."""
 

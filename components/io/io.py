@@ -53,7 +53,7 @@ class Io(Component):
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         sensors = self.robot.read()
-        measured_t = t if sensors.t is None else sensors.t - self.deployment.run.epoch_s
+        measured_t = t - sensors.age_s if sensors.t is None else sensors.t - self.deployment.run.epoch_s
         law, damping, reason = self._judged(inbox, sensors, t, t - measured_t)
         outbox.publish(
             "hw/state",

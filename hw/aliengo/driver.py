@@ -1,36 +1,26 @@
-"""The real Aliengo behind the robot interface."""
+"""The Aliengo on its wire, real or emulated, behind the robot interface."""
 
 from __future__ import annotations
 
-import atexit
-from math import inf
-from threading import Condition, Event, Thread
-from time import monotonic, sleep
-
-from surefoot.bus.topics import CYCLE_HZ
 from surefoot.config.aliengo import Aliengo
 from surefoot.config.robot import Robot
-from surefoot.hw.aliengo.complaint import complaint
-from surefoot.hw.aliengo.deadlines import Deadlines
+from surefoot.hw.aliengo.cycle_exchange import CycleExchange
+from surefoot.hw.aliengo.exchange import Exchange
 from surefoot.hw.aliengo.law_encoder import LawEncoder
-from surefoot.hw.aliengo.link import Link
 from surefoot.hw.aliengo.link_statistics import LinkRecorder, LinkStatistics
 from surefoot.hw.aliengo.plausibility import Plausibility
-from surefoot.hw.aliengo.state_feed import StateFeed, TimedState
-from surefoot.hw.errors import HardwareFault, PacketError
+from surefoot.hw.aliengo.state_feed import TimedState
+from surefoot.hw.aliengo.timer_exchange import TimerExchange
+from surefoot.hw.errors import PacketError
 from surefoot.hw.robot_interface import DepthImage, MotorLaw, Sensors
 
-_PERIOD_S = 1.0 / CYCLE_HZ
-_PATIENCE_S = 10 * _PERIOD_S  # after a stall of this machine the robot answers again before it counts as silent
-_LAST_COMMANDS = 25  # that damp, when the driver closes: one may get lost, and the robot may hold the last it got
+_EXCHANGES: dict[str, type[TimerExchange] | type[CycleExchange]] = {"timer": TimerExchange, "cycle": CycleExchange}
 
 
 class AliengoDriver:
-    """Exchanges a command for a state at 500 Hz on a thread of its own, from construction to `close`.
+    """Makes packets of motor laws and hands over what the robot measured; an exchange carries both.
 
-    The robot speaks only when spoken to, and what it does when commands stop is not documented: so one is sent in
-    every cycle. It is the newest motor law; it damps when the last cycle of the caller brought no law, when the
-    law is older than `law_timeout_s`, and at the end.
+    It damps from its construction on, in a cycle that brings no law, and at its end.
     """
 
     def __init__(self, robot: Robot, settings: Aliengo, damping_kd: float):
@@ -44,34 +34,17 @@ class AliengoDriver:
         Raises:
             HardwareFault: there is no way to the robot, or it does not answer.
         """
-        self._settings = settings
         plausibility = Plausibility(robot, settings.plausible)
         self._encoder = LawEncoder(settings, plausibility, damping_kd)
-        self._damp = self._encoder.damp
-        self._order = (self._damp, inf)  # a packet, and until when it may be sent
-        self._written = False
         self._recorder = LinkRecorder()
-        self._feed = StateFeed(settings, plausibility, self._recorder)
-        self._news = Condition()
-        self._ending = Event()
-        self._link = Link(settings, self._recorder)
-        self._thread = Thread(target=self._exchange, name="aliengo", daemon=True)
-        self._thread.start()
-        atexit.register(self.close)  # for a way out that closes nothing; only a kill leaves the robot to itself
-        self._await_first_state()
+        self._written = False
+        exchange = _EXCHANGES[settings.exchange]
+        self._exchange: Exchange = exchange(settings, plausibility, self._encoder.damp, self._recorder)
 
     @property
     def newest(self) -> TimedState:
-        """All that the robot told in its newest state, and when that was.
-
-        Raises:
-            HardwareFault: it is older than `stale_s`.
-        """
-        with self._news:
-            fresh = self._news.wait_for(self._fresh, _PATIENCE_S)
-        if fresh is None:
-            raise HardwareFault(self._complaint())
-        return fresh
+        """All that the robot told in its newest state, and when that was. Raises as `read`."""
+        return self._exchange.newest
 
     @property
     def statistics(self) -> LinkStatistics:
@@ -79,17 +52,12 @@ class AliengoDriver:
         return self._recorder.statistics()
 
     @property
-    def tick_unit(self) -> str:
-        """As of `TickClock`: "us", "ms", "none", or "" while it is being found out."""
-        return self._feed.clock.unit
-
-    @property
     def trouble(self) -> str:
         """What of the last law did not fit the packet; what was last amiss on the link."""
         return "; ".join(words for words in (*self._encoder.limited, self._recorder.trouble) if words)
 
     def read(self) -> Sensors:
-        return self.newest.sensors
+        return self._exchange.read()
 
     def depth(self) -> DepthImage | None:
         """None: the robot has no camera on this link."""
@@ -104,64 +72,21 @@ class AliengoDriver:
         try:
             packet = self._encoder.packet(law)
         except PacketError:
-            self._order = (self._damp, inf)
+            self._exchange.order(None)
             raise
-        self._order = (packet, monotonic() + self._settings.law_timeout_s)
+        self._exchange.order(packet)
         self._written = True
 
     def advance(self) -> None:
-        """End the cycle without waiting; one without a law damps."""
+        """End the cycle; one without a law damps. Whether the robot answered is `read`'s to say."""
         if not self._written:
-            self._order = (self._damp, inf)
+            self._exchange.order(None)
         self._written = False
+        self._exchange.end_cycle()
 
     def truth(self) -> None:
         """None: nobody knows it."""
 
     def close(self) -> None:
-        """Damp, often enough for the robot to hear it, and end."""
-        self._ending.set()
-        self._thread.join()
-        atexit.unregister(self.close)
-        if self._link.is_open:
-            for _ in range(_LAST_COMMANDS):
-                self._link.send(self._damp)
-                sleep(_PERIOD_S)
-            self._link.close()
-
-    def _exchange(self) -> None:
-        deadlines = Deadlines(_PERIOD_S, monotonic())
-        while not self._ending.is_set():
-            sent = monotonic()
-            packet, until = self._order
-            self._link.send(packet if sent <= until else self._damp)
-            deadline, overruns = deadlines.following(monotonic())
-            self._recorder.command(sent, self._listen(deadline), overruns)
-
-    def _listen(self, deadline: float) -> float | None:
-        """Take what comes until the next command is due; when the first new state came."""
-        answered = None
-        while self._link.wait(deadline - monotonic()):
-            arrived = monotonic()
-            if self._feed.take(self._link.drain(), arrived):
-                answered = answered or arrived
-                with self._news:
-                    self._news.notify_all()
-            if arrived >= deadline:
-                break
-        return answered
-
-    def _fresh(self) -> TimedState | None:
-        newest = self._feed.newest
-        return newest if newest and monotonic() - newest.t <= self._settings.stale_s else None
-
-    def _await_first_state(self) -> None:
-        with self._news:
-            came = self._news.wait_for(lambda: self._feed.newest, self._settings.first_answer_s)
-        if came is None:
-            self.close()
-            raise HardwareFault(self._complaint())
-
-    def _complaint(self) -> str:
-        newest = self._feed.newest
-        return complaint(self._settings, self.statistics, None if newest is None else monotonic() - newest.t)
+        """Leave the robot damping, and end."""
+        self._exchange.close()

@@ -9,7 +9,7 @@ from surefoot.config.aliengo import Aliengo
 from surefoot.hw.aliengo.link_statistics import LinkRecorder
 from surefoot.hw.errors import HardwareFault
 
-_LONGEST = 2048  # more than any packet, so that a longer one shows
+_LONGEST = 65535  # more than a datagram has room for: one that is too long shows
 _AT_ONCE = 32  # more than can have come since the last look; a flood must not hold up the next command
 
 

@@ -19,7 +19,7 @@ from surefoot.hw.robot_interface import Sensors, Stop
 
 @dataclass(frozen=True)
 class TimedState:
-    """A state, when it was measured, on this machine's monotonic clock [s], and what the remote asks for in it."""
+    """A state, when it was measured (on the clock on which states arrive [s]), and what the remote asks for."""
 
     t: float
     state: AliengoState
@@ -50,11 +50,11 @@ class StateFeed:
         clock: of the robot's tick.
     """
 
-    def __init__(self, settings: Aliengo, plausibility: Plausibility, recorder: LinkRecorder):
+    def __init__(self, settings: Aliengo, plausibility: Plausibility, recorder: LinkRecorder, clock: TickClock):
         self._generation = GENERATIONS[settings.generation]
         self._reading, self._plausibility, self._recorder = settings.reading, plausibility, recorder
         self._chords = StopChords(settings.chords)
-        self.clock = TickClock(settings.tick_unit)
+        self.clock = clock
         self.newest: TimedState | None = None
 
     def take(self, packets: Iterable[bytes], arrived: float) -> bool:
@@ -62,7 +62,7 @@ class StateFeed:
 
         Args:
             packets: in order of arrival.
-            arrived: on the monotonic clock [s].
+            arrived: when [s].
 
         Returns:
             Whether there is a newer state.

@@ -1,4 +1,4 @@
-"""The robot's tick as time on this machine's monotonic clock."""
+"""The robot's tick as time on a clock of ours."""
 
 from __future__ import annotations
 
@@ -27,9 +27,15 @@ class TickClock:
         unit: "us", "ms", "none" where arrival tells the time, "" while the unit is being found out.
     """
 
-    def __init__(self, unit: str):
-        """`unit`: one of `hw.aliengo.tick_unit`."""
+    def __init__(self, unit: str, drift: float = _DRIFT):
+        """For one robot.
+
+        Args:
+            unit: one of `hw.aliengo.tick_unit`.
+            drift: how far its clock and this one may run apart, as a share of time.
+        """
         self.unit = "" if unit == "auto" else unit
+        self._drift = drift
         self._newest: int | None = None
         self._ticks = 0  # since the first, without wraps
         self._began = self._arrived = 0.0
@@ -49,10 +55,10 @@ class TickClock:
 
         Args:
             tick: ahead of all before.
-            arrived: when it came, on the monotonic clock [s].
+            arrived: when it came [s].
 
         Returns:
-            When it was, on the same clock [s]: not after `arrived`, and never before an earlier tick.
+            When it was, on the clock of `arrived` [s]: not after `arrived`, and never before an earlier tick.
         """
         if self._newest is None:
             self._began = self._arrived = arrived
@@ -65,7 +71,7 @@ class TickClock:
         if self.unit not in UNITS_S:
             return arrived
         robot_s = self._ticks * UNITS_S[self.unit]
-        self._offset = min(self._offset + _DRIFT * since, arrived - robot_s)
+        self._offset = min(self._offset + self._drift * since, arrived - robot_s)
         return robot_s + self._offset
 
     def _find_unit(self, elapsed: float) -> None:

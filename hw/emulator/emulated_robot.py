@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import asin, atan2
 
 import numpy as np
 
+from surefoot.bus.messages import SimTruth
 from surefoot.bus.topics import CYCLE_HZ
 from surefoot.config.deployment import Deployment
 from surefoot.hw.aliengo.aliengo_state import AliengoState
@@ -18,8 +20,10 @@ from surefoot.hw.aliengo.state_packet import encode_state
 from surefoot.hw.aliengo.tick_clock import UNITS_S
 from surefoot.hw.emulator.broken_parts import BrokenParts
 from surefoot.hw.emulator.motors import Motors
+from surefoot.hw.emulator.witness import Witness
 from surefoot.hw.errors import PacketError
-from surefoot.hw.mujoco.backend import MujocoRobot
+from surefoot.hw.mujoco.backend import STEPS_PER_CYCLE, MujocoRobot
+from surefoot.hw.mujoco.scene import PHYSICS_DT
 
 CYCLE_S = 1.0 / CYCLE_HZ
 """By which the robot's time goes on at once [s]."""
@@ -33,6 +37,7 @@ class EmulatedRobot:
 
     Attributes:
         plant: the simulated robot behind it.
+        witness: of what truly becomes of it.
         commands: how many it has followed.
         refused: how many it has not, for they were damaged or no commands.
         trouble: in words what was last amiss with one.
@@ -50,7 +55,8 @@ class EmulatedRobot:
         self._cycles = 0
         self.commands = self.refused = 0
         self.trouble = ""
-        self._state = self._measured()
+        self.witness = Witness(self.plant.field.end_x + robot.foot.radius)
+        self._state = self._measured(self.plant.truth())
 
     @property
     def t(self) -> float:
@@ -75,20 +81,30 @@ class EmulatedRobot:
             return None
         return encode_state(self._state, self._generation, self._reading)[0]
 
-    def advance(self) -> None:
+    def advance(self, arrive: Callable[[float], None] = lambda t: None) -> None:
         """Go on by a cycle.
+
+        Args:
+            arrive: called with the time of each physics step [s], to take the commands that have come by then;
+                the motors follow them from that step on.
 
         Raises:
             HardwareFault: the physics diverged.
         """
-        self.plant.write(self._motors.law(self.t))
+        for step in range(STEPS_PER_CYCLE):
+            t = self.t + step * PHYSICS_DT
+            arrive(t)
+            law = self._motors.law(t)
+            self.plant.write(law, step)
         self.plant.advance()
-        self._motors.warm(self.plant.truth().tau, CYCLE_S)
+        truth = self.plant.truth()
         self._cycles += 1
-        self._state = self._with_stuck_parts(self._measured())
+        self._motors.warm(truth.tau, CYCLE_S, self.t)
+        self.witness.see(truth, law, self.t)
+        self._state = self._with_stuck_parts(self._measured(truth))
 
-    def _measured(self) -> AliengoState:
-        sensors, truth = self.plant.read(), self.plant.truth()
+    def _measured(self, truth: SimTruth) -> AliengoState:
+        sensors = self.plant.read()
         return AliengoState(
             quat_WB=truth.quat_WB,
             omega_WB_B=sensors.omega_WB_B,

@@ -10,6 +10,9 @@ import numpy as np
 
 from surefoot.config.emulator import Wire
 
+_SAME_S = 1e-9
+"""Times that are closer are one: a number of cycles and a latency do not add up to the last digit."""
+
 
 class Packet(NamedTuple):
     """A packet and whose it is: who sent it, or who is to get it."""
@@ -35,21 +38,22 @@ class LinkFaults:
     def send(self, packet: Packet, t: float) -> None:
         """Put a packet in at time `t` [s]."""
         settings = self._settings
+        bad = settings.bad_from_s <= t < settings.bad_until_s
         # Always as many figures, so that one setting never shifts what another draws.
         lost, doubled, held_back, damaged, *jitter = self._fate.random(6)
-        if lost < settings.loss:
+        if bad and lost < settings.loss:
             return
-        if damaged < settings.corrupt:
+        if bad and damaged < settings.corrupt:
             packet = packet._replace(data=self._damage(packet.data))
-        arrives = t + settings.latency_s + settings.reorder_s * (held_back < settings.reorder)
-        for share in jitter[: 1 + (doubled < settings.duplicate)]:
+        arrives = t + settings.latency_s + settings.reorder_s * (bad and held_back < settings.reorder)
+        for share in jitter[: 1 + (bad and doubled < settings.duplicate)]:
             heapq.heappush(self._held, (arrives + settings.jitter_s * share, self._copies, packet))
             self._copies += 1
 
     def due(self, t: float) -> list[Packet]:
         """What has arrived by time `t` [s] and was not taken before, in order of arrival."""
         arrived = []
-        while self.next_t <= t:
+        while self.next_t <= t + _SAME_S:
             arrived.append(heapq.heappop(self._held)[2])
         return arrived
 

@@ -58,9 +58,10 @@ class Motors:
             tau=np.where(follows, tau, 0.0),
         )
 
-    def warm(self, tau: np.ndarray, seconds: float) -> None:
-        """Heat up or cool down by torques (12,) [N m] that have acted so long."""
+    def warm(self, tau: np.ndarray, seconds: float, t: float) -> None:
+        """Heat up or cool down by torques (12,) [N m] that have acted so long until time `t` [s]."""
         settings = self._settings
         end = settings.ambient + settings.heating * tau**2
         self.temperature = end + (self.temperature - end) * exp(-seconds / settings.heating_s)
+        self.temperature[self._broken.joints("hot motor", t)] = settings.overheated + 1.0
         self._hot = self.temperature > np.where(self._hot, settings.cooled, settings.overheated)

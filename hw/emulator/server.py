@@ -9,12 +9,13 @@ from contextlib import suppress
 from time import monotonic
 
 from surefoot.config.deployment import Deployment
+from surefoot.hw.aliengo.turn import Turn, decode_turn, encode_turn
 from surefoot.hw.emulator.emulated_robot import CYCLE_S, EmulatedRobot
 from surefoot.hw.emulator.link_faults import LinkFaults, Packet
 from surefoot.hw.errors import HardwareFault
 from surefoot.hw.mujoco.plant import stream
 
-_LONGEST = 2048  # more than any packet, so that a longer one shows
+_LONGEST = 65535  # more than a datagram has room for: one that is too long shows
 _LOOK_S = 0.1
 _AT_ONCE = 10  # cycles that are made up before the socket is looked at again
 _TOO_LATE_S = 0.2  # what this machine lags behind beyond it is given up
@@ -56,6 +57,7 @@ class EmulatorServer:
         self.robot = EmulatedRobot(deployment)
         self._commands = LinkFaults(self._settings.commands, stream(seed, "link_commands"))
         self._states = LinkFaults(self._settings.states, stream(seed, "link_states"))
+        self._turn = Turn(-1, ())
         self.answers = 0
         self.lag_s = 0.0
 
@@ -72,17 +74,40 @@ class EmulatorServer:
                 self._follow_wall(ended)
 
     def _follow_packets(self, ended: Callable[[], bool]) -> None:
-        """Each packet that comes, and be it lost on the rest of its way, takes a cycle of the robot's time.
-
-        What the link would deliver within a cycle is delivered at once: nobody else lets time go on.
-        """
+        """Each packet takes a cycle of the robot's time, at whose beginning it has left; so does each new turn."""
         while not ended():
             for packet in self._receive(_LOOK_S):
-                self._commands.send(packet, self.robot.t)
-                asked = self._take_commands(self.robot.t + CYCLE_S)
-                self.robot.advance()
-                self._answer(asked, self.robot.t)
-                self._deliver(self.robot.t + CYCLE_S)
+                turn = decode_turn(packet.data)
+                if turn is None:
+                    self._send(self._cycle([packet]))
+                else:
+                    self._take_turn(turn, packet.peer)
+
+    def _take_turn(self, turn: Turn, peer: tuple[str, int]) -> None:
+        """Answer a turn; one that comes again, because it or its answer got lost, is answered with the same."""
+        if turn.number < self._turn.number:
+            return  # of a driver that is gone, or has gone on
+        if turn.number > self._turn.number:
+            arrived = self._cycle([Packet(data, peer) for data in turn.packets])
+            self._turn = Turn(turn.number, tuple(packet.data for packet in arrived if packet.peer == peer))
+            self.answers += len(self._turn.packets)
+        with suppress(OSError):  # who asked may be out of reach by now
+            self._socket.sendto(encode_turn(self._turn), peer)
+
+    def _cycle(self, packets: Sequence[Packet]) -> list[Packet]:
+        """Go on by a cycle, at whose beginning commands have left; the states that have arrived by its end.
+
+        The link's delays are of the robot's time. A command acts from the first physics step on at which it has
+        arrived, and is answered at the end of the cycle in which that is, with what is measured there. Whoever
+        reads between two cycles finds what has arrived by then: a state is as old as its way is long, in whole
+        cycles.
+        """
+        robot, asked = self.robot, []
+        for packet in packets:
+            self._commands.send(packet, robot.t)
+        robot.advance(lambda t: asked.extend(self._take_commands(t)))
+        self._answer(asked, robot.t)
+        return self._states.due(robot.t)
 
     def _follow_wall(self, ended: Callable[[], bool]) -> None:
         """The robot's time is the wall's; a late cycle is made up, so that the tick keeps its pace."""
@@ -93,7 +118,7 @@ class EmulatorServer:
                 self._commands.send(packet, monotonic() - begin)
             now = monotonic() - begin
             self._answer(self._take_commands(now), now)
-            self._deliver(now)
+            self._send(self._states.due(now))
             late_s = now - self.robot.t
             for _ in range(min(int(late_s / CYCLE_S), _AT_ONCE)):
                 self.robot.advance()
@@ -123,8 +148,8 @@ class EmulatorServer:
             if answer is not None:
                 self._states.send(Packet(answer, peer), t)
 
-    def _deliver(self, t: float) -> None:
-        for packet in self._states.due(t):
+    def _send(self, packets: Sequence[Packet]) -> None:
+        for packet in packets:
             self.answers += 1
             with suppress(OSError):  # who asked may be out of reach by now
                 self._socket.sendto(*packet)

@@ -94,8 +94,9 @@ class MujocoRobot:
         self._images = due
         return self._camera.image(self.data)
 
-    def write(self, law: MotorLaw) -> None:
-        self._laws.append((self._step + self._delay_steps, law))
+    def write(self, law: MotorLaw, steps_later: int = 0) -> None:
+        """The motor law of this cycle, or from so many physics steps after its beginning on."""
+        self._laws.append((self._step + self._delay_steps + steps_later, law))
         self._written = True
 
     def advance(self) -> None:

@@ -22,6 +22,7 @@ def free_port():
 def test_it_answers_in_its_generation_until_it_is_ended(name):
     generation, port = GENERATIONS[name], free_port()
     options = ["--terrain", "planks", "--port", str(port), "--generation", name, "--set", "emulator.pace=packets"]
+    options += ["--set", "emulator.states.latency_s=0", "--set", "emulator.states.jitter_s=0"]
     call = [sys.executable, "-P", "-m", "surefoot.tools.cli", "emulator", *options]
     with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         try:

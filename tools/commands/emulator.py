@@ -67,7 +67,8 @@ def _run(call: argparse.Namespace) -> int:
         return 1
     except KeyboardInterrupt:
         robot = server.robot
+        print(f"\n{robot.witness}")
         refused = f", {robot.refused} refused: {robot.trouble}" if robot.refused else ""
         lag = f"; this machine was {server.lag_s:.1f} s too slow" if server.lag_s else ""
-        print(f"\n{robot.t:.1f} s, {robot.commands} commands, {server.answers} answers{refused}{lag}")
+        print(f"{robot.t:.1f} s, {robot.commands} commands, {server.answers} answers{refused}{lag}")
     return 0

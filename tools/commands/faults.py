@@ -15,6 +15,9 @@ Kill, pause and restart every process in every phase of live runs, and write wha
 With the simulated clock the run must go on with the same bytes as without the fault; on the monotonic clock the
 robot must stay up or reach its declared safe state (docs/faults.md). The whole drill takes about an hour.
 
+With --robot it is the emulated robot and its link that break, in simulated time, standing and in a swing; the page
+tells after how many cycles no motor was driven any more (docs/hardware_faults.md).
+
 exit code: 0 all went as declared; 1 something did not; 2 the call was wrong
 """
 
@@ -32,6 +35,7 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--clock", action="append", help="simulated or monotonic; both if none")
     parser.add_argument("--phase", action="append", help="standing, 'base shift', swing or probing; all if none")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a setting")
+    parser.add_argument("--robot", action="store_true", help="break the emulated robot and its link instead")
     parser.add_argument("--out", type=Path, required=True, help="the page, in Markdown")
     parser.set_defaults(run=_run)
 
@@ -39,11 +43,20 @@ def add(commands: argparse._SubParsersAction) -> None:
 def _run(call: argparse.Namespace) -> int:
     from surefoot.tools.faults.case import PHASES
     from surefoot.tools.faults.page import drill_page
+    from surefoot.tools.faults.robot_page import robot_page
 
+    def say(words: str) -> None:
+        print(words, flush=True)
+
+    if call.robot:
+        if call.clock or call.phase or len(call.config) > 1:
+            raise CallError("--robot has its own clock and phases, and one deployment, such as planks_emulated")
+        config = deployment_file(call.config[0] if call.config else "planks_emulated")
+        return 0 if robot_page(config, call.set, call.out, say) else 1
     clocks = _among(call.clock, _CLOCKS, "--clock")
     phases = _among(call.phase, PHASES, "--phase")
     configs = [deployment_file(name) for name in call.config or ("flat", "planks")]
-    good = drill_page(configs, clocks, phases, call.set, call.out, lambda words: print(words, flush=True))
+    good = drill_page(configs, clocks, phases, call.set, call.out, say)
     return 0 if good else 1
 
 

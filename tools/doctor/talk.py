@@ -20,6 +20,7 @@ from surefoot.hw.aliengo.link import Link
 from surefoot.hw.aliengo.link_statistics import LinkRecorder, LinkStatistics
 from surefoot.hw.aliengo.plausibility import Plausibility
 from surefoot.hw.aliengo.state_feed import StateFeed
+from surefoot.hw.aliengo.tick_clock import TickClock
 from surefoot.hw.robot_interface import damping_law
 
 _PERIOD_S = 1.0 / CYCLE_HZ
@@ -97,7 +98,7 @@ class _Ear:
         self._waits = wire.exchange == "cycle"
         self._layout = GENERATIONS[wire.generation].state
         self.heard, self.recorder = Heard(wire.generation), LinkRecorder()
-        self._feed = StateFeed(wire, plausibility, self.recorder)
+        self._feed = StateFeed(wire, plausibility, self.recorder, TickClock(wire.tick_unit))
         self._link = Link(wire, self.recorder)
 
     def __enter__(self) -> _Ear:

@@ -12,6 +12,7 @@ from surefoot.hw.aliengo.link_statistics import LinkRecorder
 from surefoot.hw.aliengo.remote import Button, Remote
 from surefoot.hw.aliengo.state_feed import StateFeed
 from surefoot.hw.aliengo.state_packet import encode_state
+from surefoot.hw.aliengo.tick_clock import TickClock
 
 STATE = drawn_state(np.random.default_rng(12))
 
@@ -33,7 +34,7 @@ def recorder():
 
 @pytest.fixture
 def feed(recorder):
-    return StateFeed(Aliengo(tick_unit="none"), PLAUSIBILITY, recorder)
+    return StateFeed(Aliengo(), PLAUSIBILITY, recorder, TickClock("none"))
 
 
 def counts(recorder):
@@ -79,7 +80,7 @@ def test_a_tick_far_ahead_in_a_damaged_packet_does_not_make_the_next_ones_old(fe
 
 @pytest.mark.parametrize("generation", [G0, G1])
 def test_what_the_remote_asks_for_comes_with_the_sensors(generation, recorder):
-    feed = StateFeed(Aliengo(generation=generation.name), PLAUSIBILITY, recorder)
+    feed = StateFeed(Aliengo(generation=generation.name), PLAUSIBILITY, recorder, TickClock("none"))
     feed.take([packet(1, generation, remote=Remote(Button.L2 | Button.B))], 0.0)
     assert feed.newest.sensors.stop == "settle"
     feed.take([packet(2, generation, remote=Remote())], 0.0)

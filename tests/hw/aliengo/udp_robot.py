@@ -10,6 +10,7 @@ from packet_samples import PLAUSIBILITY, READING, drawn_state
 from surefoot.hw.aliengo.command_packet import AliengoCommand, decode_command
 from surefoot.hw.aliengo.generation import G1
 from surefoot.hw.aliengo.state_packet import encode_state
+from surefoot.hw.aliengo.turn import Turn, decode_turn, encode_turn
 
 PATIENCE_S = 60.0
 """Until a test is given up; none depends on how soon something happens."""
@@ -22,7 +23,7 @@ def one_state(robot):
 
 
 class UdpRobot:
-    """Answers every command from the socket on which it came.
+    """Answers every command from the socket on which it came, and a turn with a turn.
 
     Attributes:
         port: where it listens, an ephemeral one.
@@ -87,11 +88,14 @@ class UdpRobot:
                 packet, sender = self._socket.recvfrom(2048)
             except TimeoutError:
                 continue
-            command = decode_command(packet, self.generation, PLAUSIBILITY)
-            with self._heard:
-                self.commands.append(command)
-                self._heard.notify_all()
-            for answer in self.answer(self):
+            turn = decode_turn(packet)
+            for asked in (packet,) if turn is None else turn.packets:
+                command = decode_command(asked, self.generation, PLAUSIBILITY)
+                with self._heard:
+                    self.commands.append(command)
+                    self._heard.notify_all()
+            answers = self.answer(self)
+            for answer in answers if turn is None else [encode_turn(Turn(turn.number, tuple(answers)))]:
                 self._socket.sendto(answer, sender)
 
 

@@ -1,7 +1,7 @@
 """The robots that keep the contract: the simulated one, and the drivers with an emulator over real sockets."""
 
 from contextlib import contextmanager
-from time import sleep
+from time import monotonic, sleep
 
 import mujoco
 import numpy as np
@@ -13,7 +13,9 @@ from surefoot.config.emulator import Emulator, Wire
 from surefoot.config.hw import Hw
 from surefoot.config.robot import load_robot
 from surefoot.hw.aliengo.backend import open_aliengo
+from surefoot.hw.emulator.emulated_robot import CYCLE_S
 from surefoot.hw.mujoco.backend import MujocoRobot
+from surefoot.hw.robot_interface import damping_law
 
 NOISES = ("torque_noise", "encoder_noise", "velocity_noise", "gyro_noise", "gyro_bias", "acc_noise", "acc_bias")
 SOUND = Wire(latency_s=0.0, jitter_s=0.0)
@@ -36,7 +38,10 @@ def deployment(exchange="timer", commands=SOUND, states=SOUND, faults=(), **wire
     )
 
 
-CYCLE_US = 2000
+DAMPING_KD = 3.0
+
+PATIENCE_S = 60.0
+"""Until a test is given up; none depends on how soon something happens."""
 
 LEGS_UP = np.tile([0.0, 2.8, -1.5], 4)
 """On its belly, nothing but the trunk touches the ground."""
@@ -91,8 +96,6 @@ class InLockstep(Simulated):
 
     def close(self):
         self.robot.close()
-        while self._emulation.robot.commands <= self.robot.statistics.commands:  # until the last one is heard
-            sleep(0.001)
         self._emulation.switch_off()
 
     def step_plant(self):
@@ -102,18 +105,75 @@ class InLockstep(Simulated):
         self._emulation.switch_off()
 
 
+class Held:
+    """Holds the plant of an emulated robot fast, while its tick and its packets go on.
+
+    A driver with a thread of its own sends when it likes. Here the plant moves for as many cycles as it is
+    released for, each under the law that was asked for, however long a busy machine takes and whatever is sent
+    meanwhile.
+
+    Attributes:
+        left: cycles that it has not made yet.
+        tick: from which on the robot tells of what came of the last of them.
+    """
+
+    def __init__(self, robot):
+        self._robot, self._law, self._fits = robot, None, False
+        self.left = self.tick = 0
+        self._write, self._advance = robot.plant.write, robot.plant.advance
+        robot.plant.write, robot.plant.advance = self.write, self.advance
+
+    def release(self, cycles, law):
+        """Let it go on by so many cycles of a law."""
+        self._law, self.left = law, cycles
+
+    def write(self, law, steps_later=0):
+        self._fits = self.left > 0 and same_but_for_rounding(law, self._law)
+        if self._fits:
+            self._write(law, steps_later)
+
+    def advance(self):
+        if self._fits:
+            self._advance()
+            self.tick = round(1e6 * (self._robot.t + CYCLE_S))
+            self.left -= 1
+
+
+def same_but_for_rounding(law, asked):
+    """Whether a law is what came of another in a packet; an angle without a gain says nothing."""
+    q = np.where(asked.kp > 0.0, asked.q, 0.0)
+    places = (("dq", 1e-5), ("kp", 1 / 32), ("kd", 1 / 16), ("tau", 1 / 256))
+    alike = all(np.allclose(getattr(law, name), getattr(asked, name), rtol=0, atol=atol) for name, atol in places)
+    return alike and np.allclose(law.q, q, rtol=0, atol=1e-5)
+
+
 class ByTimer(InLockstep):
     """The real robot's driver, whose thread sends a command in every cycle, with the same emulator."""
 
+    def __init__(self, emulation):
+        self._held = Held(emulation.robot)
+        super().__init__(emulation)
+
     def run(self, cycles, law=None):
-        """The same at the least: as many commands after those that are on their way, which each take a cycle."""
-        until = self.robot.statistics.commands + 1 + cycles
-        while self.robot.newest.state.tick < CYCLE_US * until:
+        self._held.release(cycles, damping_law(DAMPING_KD) if law is None else law)
+        end = monotonic() + PATIENCE_S
+        while self._held.left or self.robot.newest.state.tick < self._held.tick:
+            assert monotonic() < end, "the robot was not asked for what it was to do"
             if law is not None:
                 self.robot.write(law)
             self.robot.advance()
             sleep(0.001)
         return self.robot.read()
+
+    def close(self):
+        self.robot.close()
+        while self._emulation.robot.commands <= self.robot.statistics.commands:  # until the last one is heard
+            sleep(0.001)
+        self._emulation.switch_off()
+
+    def step_plant(self):
+        self._held.release(1, damping_law(DAMPING_KD))
+        super().step_plant()
 
 
 @contextmanager
@@ -137,6 +197,3 @@ KINDS = {
     "lockstep, G1": (InLockstep, "cycle", "G1"),
     "timer, G1": (ByTimer, "timer", "G1"),
 }
-
-IN_STEP = [kind for kind in KINDS if not kind.startswith("timer")]
-"""Those whose cycles are the caller's."""

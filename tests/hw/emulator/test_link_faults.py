@@ -77,6 +77,11 @@ def test_damage_turns_as_many_bits_as_it_is_told_to(bits):
     assert set(flipped) == {0, bits} and abs(flipped.count(bits) / len(PACKETS) - 0.3) < 0.04
 
 
+def test_a_burst_has_its_begin_and_its_end():
+    arrivals, _ = sent(Wire(**STILL, loss=1.0, bad_from_s=1.0, bad_until_s=1.5))
+    assert {look for look, _ in arrivals} == {*range(500), *range(750, 2000)}
+
+
 def test_one_seed_repeats_and_one_setting_does_not_shift_what_another_draws():
     lossy = Wire(**STILL, loss=0.2)
     both = Wire(**STILL, loss=0.2, corrupt=0.5, duplicate=0.5)

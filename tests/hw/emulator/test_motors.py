@@ -81,20 +81,30 @@ def test_a_dead_motor_does_nothing_while_it_is_dead_and_nobody_else_notices(brak
 def test_a_steady_torque_heats_a_motor_to_its_end_and_rest_cools_it():
     twelve = motors(heating=0.05, heating_s=10.0, ambient=20.0)
     tau = np.where(np.arange(12) == 4, -30.0, 0.0)
-    twelve.warm(tau, 10.0)
+    twelve.warm(tau, 10.0, 0.0)
     assert twelve.temperature[4] == pytest.approx(20.0 + 45.0 * (1.0 - np.exp(-1.0)))
-    twelve.warm(tau, 1e4)
+    twelve.warm(tau, 1e4, 0.0)
     np.testing.assert_allclose(twelve.temperature, np.where(np.arange(12) == 4, 65.0, 20.0))
-    twelve.warm(np.zeros(12), 1e4)
+    twelve.warm(np.zeros(12), 1e4, 0.0)
     np.testing.assert_allclose(twelve.temperature, 20.0)
 
 
 def test_a_motor_that_is_too_hot_brakes_and_says_so_until_it_has_cooled():
     twelve = motors(heating=1.0, heating_s=10.0, ambient=20.0, cooled=60.0, overheated=90.0)
     hot = np.arange(12) == 4
-    twelve.warm(np.where(hot, 10.0, 0.0), 100.0)
+    twelve.warm(np.where(hot, 10.0, 0.0), 100.0, 0.0)
     assert brakes(twelve.law(1.0), hot) and (twelve.mode == np.where(hot, OVERHEATED, SERVO)).all()
     while twelve.temperature[4] > 60.0:
         assert brakes(twelve.law(1.0), hot)
-        twelve.warm(np.zeros(12), 1.0)
+        twelve.warm(np.zeros(12), 1.0, 0.0)
     assert brakes(twelve.law(1.0), NONE) and (twelve.mode == SERVO).all()
+
+
+def test_a_motor_that_is_broken_hot_is_so_at_once_and_cools_when_it_is_right_again():
+    twelve = motors(faults=[Fault("hot motor", "FL_hip", begin_s=2.0, end_s=3.0)], overheated=90.0, heating_s=10.0)
+    for t, degrees in ((1.9, 25.0), (2.0, 91.0), (2.9, 91.0)):
+        twelve.warm(np.zeros(12), 0.1, t)
+        assert twelve.temperature[JOINT_NAMES.index("FL_hip")] == pytest.approx(degrees)
+    assert brakes(twelve.law(2.9), np.arange(12) == JOINT_NAMES.index("FL_hip"))
+    twelve.warm(np.zeros(12), 10.0, 3.0)
+    assert twelve.temperature.max() < 60.0

@@ -3,6 +3,7 @@
 import socket
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from emulation import PATIENT, emulator
 from packet_samples import GOOD_LAW, PLAUSIBILITY, READING
@@ -14,6 +15,8 @@ from surefoot.config.hw import Hw
 from surefoot.hw.aliengo.command_packet import encode_command
 from surefoot.hw.aliengo.generation import G1
 from surefoot.hw.aliengo.state_packet import decode_state
+from surefoot.hw.aliengo.turn import Turn, decode_turn, encode_turn
+from surefoot.hw.emulator.link_faults import LinkFaults
 from surefoot.hw.emulator.server import EmulatorServer
 from surefoot.hw.errors import HardwareFault
 
@@ -21,9 +24,26 @@ COMMAND = encode_command(GOOD_LAW, G1, PLAUSIBILITY)[0]
 SOUND = Wire(latency_s=0.0, jitter_s=0.0)
 
 
-def deployment(pace="packets", commands=SOUND, states=SOUND, **settings):
+def deployment(pace="packets", commands=SOUND, states=SOUND, seed=0, **settings):
     wire = Emulator(pace=pace, commands=commands, states=states, **settings)
-    return Deployment(hw=Hw(start="lying", aliengo=Aliengo(**PATIENT)), emulator=wire)
+    hw = Hw(start="lying", seed=seed, command_delay_s=0.0, aliengo=Aliengo(**PATIENT))
+    return Deployment(hw=hw, emulator=wire)
+
+
+def turn(number):
+    return encode_turn(Turn(number, (COMMAND,)))
+
+
+def laws_that_act(robot):
+    """A list of what the motors follow, a physics step each."""
+    acting, write = [], robot.plant.write
+
+    def noted(law, steps_later=0):
+        acting.append(law)
+        write(law, steps_later)
+
+    robot.plant.write = noted
+    return acting
 
 
 class Client:
@@ -50,6 +70,17 @@ class Client:
     def ask(self, packet=COMMAND):
         self.say(packet)
         return self.hears()
+
+    def answer_to(self, datagram):
+        """The next datagram after one."""
+        self.say(datagram)
+        return self._socket.recv(2048)
+
+    def takes_turn(self, number):
+        """The ticks of the states that a turn brings."""
+        answer = decode_turn(self.answer_to(turn(number)))
+        assert answer.number == number
+        return [decode_state(packet, G1, READING, PLAUSIBILITY).tick for packet in answer.packets]
 
     def hears_nothing_before(self, tick):
         """Whether the next thing that comes is the answer that is known to come."""
@@ -84,14 +115,62 @@ def test_a_lost_command_takes_a_cycle_too():
     assert there.robot.commands == there.server.answers == 0 and there.robot.t == pytest.approx(0.040)
 
 
-def test_latency_of_whole_cycles_is_that_many_packets():
-    with (
-        emulator(deployment(states=Wire(latency_s=0.0041, jitter_s=0.0))) as there,
-        Client(there) as client,
-    ):
-        for _ in range(6):
-            client.say()
-        assert [client.hears() for _ in range(4)] == [2000, 4000, 6000, 8000]
+@pytest.mark.parametrize(
+    ("latency_s", "cycles"), [(0.0, 0), (0.0003, 1), (0.002, 1), (0.0021, 2), (0.004, 2), (0.0045, 3)]
+)
+def test_a_state_is_as_old_as_its_way_is_long_in_whole_cycles(latency_s, cycles):
+    states = Wire(latency_s=latency_s, jitter_s=0.0)
+    with emulator(deployment(states=states, tick_start=100)) as there, Client(there) as client:
+        came = [client.takes_turn(n) for n in range(1, 9)]
+    assert came == [[]] * cycles + [[100 + 2000 * n] for n in range(1, 9 - cycles)]
+
+
+@pytest.mark.parametrize(("latency_s", "ms"), [(0.0, 0), (0.0003, 1), (0.002, 2), (0.0021, 3), (0.004, 4)])
+def test_a_command_acts_from_the_first_millisecond_on_at_which_it_has_arrived(latency_s, ms):
+    commands = Wire(latency_s=latency_s, jitter_s=0.0)
+    with emulator(deployment(commands=commands)) as there, Client(there) as client:
+        laws = laws_that_act(there.robot)
+        for n in range(1, 5):
+            client.takes_turn(n)
+    assert [law.kp[0] == GOOD_LAW.kp[0] for law in laws] == [False] * ms + [True] * (8 - ms)
+
+
+def test_a_lost_command_lets_the_last_one_go_on_and_asks_for_no_state():
+    with emulator(deployment()) as there, Client(there) as client:
+        client.takes_turn(1)
+        there.server._commands = LinkFaults(replace(SOUND, loss=1.0), np.random.default_rng(0))
+        assert client.takes_turn(2) == [] and there.robot.commands == 1
+        assert (there.robot._motors.law(there.robot.t).kp == GOOD_LAW.kp).all()
+    assert there.robot.t == pytest.approx(0.004)
+
+
+def test_a_lost_state_leaves_its_turn_empty():
+    with emulator(deployment(states=replace(SOUND, loss=1.0))) as there, Client(there) as client:
+        assert [client.takes_turn(n) for n in (1, 2, 3)] == [[], [], []]
+    assert there.robot.commands == 3 and there.server.answers == 0
+
+
+def test_a_turn_that_comes_again_takes_no_time_and_is_answered_with_the_same():
+    with emulator(deployment()) as there, Client(there) as client:
+        assert [client.takes_turn(n) for n in (5, 6, 6, 6, 7)] == [[2000], [4000], [4000], [4000], [6000]]
+    assert there.robot.commands == there.server.answers == 3 and there.robot.t == pytest.approx(0.006)
+
+
+def test_a_turn_of_an_earlier_driver_is_not_heard_and_a_later_one_goes_on():
+    with emulator(deployment()) as there, Client(there) as gone, Client(there) as client:
+        assert gone.takes_turn(5) == [2000] and client.takes_turn(10**15) == [4000]
+        gone.say(turn(6))
+        assert client.takes_turn(10**15 + 1) == [6000]
+
+
+def test_one_seed_repeats_the_fate_of_every_packet():
+    bad = Wire(latency_s=0.004, jitter_s=0.006, loss=0.2, duplicate=0.2, corrupt=0.2, reorder=0.2)
+
+    def fates(seed):
+        with emulator(deployment(commands=bad, states=bad, seed=seed)) as there, Client(there) as client:
+            return [client.answer_to(turn(n)) for n in range(1, 60)]
+
+    assert fates(3) == fates(3) != fates(4)
 
 
 def test_at_the_walls_pace_the_robots_time_goes_on_by_itself():

@@ -1,0 +1,99 @@
+"""What may break of the robot or its link, and what has to come of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import Enum
+from math import ceil
+from typing import Any
+
+from surefoot.bus.topics import CYCLE_HZ
+from surefoot.config.deployment import Deployment
+from surefoot.config.emulator import Emulator, Fault, Kind, Wire
+
+Broken = Callable[[Emulator, float], Emulator]
+"""The emulator's settings with something that breaks at a time [s]."""
+
+
+class Declared(Enum):
+    """What has to come of a fault, in the words of the page."""
+
+    GOES_ON = "goes on"
+    """The robot stays up and is driven."""
+    DAMPED = "damped at once"
+    """No motor is driven once a state has told of it and a command has come back."""
+    DAMPED_LATE = "damped when the newest state is too old"
+    """As above, after `hw.aliengo.stale_s` without a state."""
+    UNHEARD = "io ends; the robot hears of nothing"
+    """Nothing that is decided here reaches the robot."""
+    NOTHING = "–"
+    """Nobody looks for it."""
+
+
+@dataclass(frozen=True)
+class RobotFault:
+    """One fault.
+
+    Attributes:
+        name: in words.
+        broken: the settings with it.
+        declared: what has to come of it.
+    """
+
+    name: str
+    broken: Broken
+    declared: Declared
+
+
+def part(kind: Kind, joint: str = "") -> Broken:
+    """A part of the robot."""
+    return lambda emulator, t: replace(emulator, faults=(Fault(kind, joint, begin_s=t),))
+
+
+def link(commands: dict[str, float], states: dict[str, float], seconds: float = 1e3) -> Broken:
+    """Both ways of the link, each with its own settings for so long."""
+
+    def worse(wire: Wire, settings: dict[str, float], t: float) -> Wire:
+        burst: dict[str, Any] = {"loss": 0.0, "bad_from_s": t, "bad_until_s": t + seconds} | settings
+        return replace(wire, **burst) if settings else wire
+
+    return lambda emulator, t: replace(
+        emulator, commands=worse(emulator.commands, commands, t), states=worse(emulator.states, states, t)
+    )
+
+
+_DAMAGE, _TWICE = {"corrupt": 0.9, "corrupt_bits": 5}, {"duplicate": 1.0}
+_SHUFFLE = {"reorder": 0.3, "reorder_s": 0.007}
+_NOTHING: dict[str, float] = {}
+
+FAULTS = (
+    RobotFault("silent robot", part("silent"), Declared.DAMPED_LATE),
+    RobotFault("stuck tick", part("stuck tick"), Declared.DAMPED_LATE),
+    RobotFault("every state lost", link(_NOTHING, {"loss": 1.0}), Declared.DAMPED_LATE),
+    RobotFault("every command lost", link({"loss": 1.0}, _NOTHING), Declared.UNHEARD),
+    RobotFault("both ways lost for 30 ms", link({"loss": 1.0}, {"loss": 1.0}, 0.030), Declared.GOES_ON),
+    RobotFault("nine of ten damaged for 30 ms", link(_DAMAGE, _DAMAGE, 0.030), Declared.GOES_ON),
+    RobotFault("every packet twice", link(_TWICE, _TWICE), Declared.GOES_ON),
+    RobotFault("three of ten 7 ms late", link(_SHUFFLE, _SHUFFLE), Declared.GOES_ON),
+    RobotFault("hot motor", part("hot motor", "RL_calf"), Declared.DAMPED),
+    RobotFault("dead motor", part("dead motor", "RL_calf"), Declared.NOTHING),
+    RobotFault("stuck encoder", part("stuck encoder", "RL_calf"), Declared.NOTHING),
+    RobotFault("stuck IMU", part("stuck imu"), Declared.NOTHING),
+)
+"""In the order of the page."""
+
+
+def damped_within_cycles(deployment: Deployment, declared: Declared) -> int | None:
+    """From the first state that tells of a fault, or is missing, until no motor is driven, in cycles of 2 ms.
+
+    The state has its way, where it is missing its predecessor grows too old, a cycle later io says so, and damping
+    has its way.
+    """
+    if declared not in (Declared.DAMPED, Declared.DAMPED_LATE):
+        return None
+    ways = (deployment.emulator.states, deployment.emulator.commands)
+    seconds = sum(way.latency_s + way.jitter_s for way in ways)
+    if declared is Declared.DAMPED_LATE:
+        seconds += deployment.hw.aliengo.stale_s
+    return ceil(seconds * CYCLE_HZ) + 2
