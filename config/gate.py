@@ -39,6 +39,8 @@ class Gate:
     tilt_max: Annotated[float, Within(0.1, 3.2)] = 1.0
     # For so long the gate's attitude follows the gyroscope more than the accelerometer [s].
     tilt_filter_s: Annotated[float, Within(0.05, 10.0)] = 0.5
+    # Without a change of any figure of the IMU (2): 0.1 s; noise alone moves them.
+    imu_stuck_cycles: Annotated[int, Within(5, 5000)] = 50
     # By the angle error of the first law after damping [N m] (1.3); 0.12 rad at the posture's gain.
     first_torque: Annotated[float, Within(0.5, 500.0)] = 30.0
     # Older measurements hold the last law [s]; the link's own limit, a fault, is 0.05.

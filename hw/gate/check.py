@@ -47,6 +47,8 @@ class Check(Enum):
     STOP = ("damped by a person (`surefoot stop`)", Answer.DAMP, "", Latch.AT_ONCE, "")
     TILT = ("tilt of the trunk, by gyroscope and accelerometer", Answer.DAMP, "hw.gate.tilt_max", Latch.AT_ONCE,
             "set the robot upright")
+    IMU = ("IMU of which no figure changes", Answer.DAMP, "hw.gate.imu_stuck_cycles", Latch.AT_ONCE,
+           "switch the robot off and on")
     POWER = ("power of all motors: 6 more cycles above the limit than below", Answer.DAMP, "hw.gate.power",
              Latch.AT_ONCE, "is a leg stuck?")
     HOT = ("temperature of a motor", Answer.DAMP, "hw.gate.temperature_max", Latch.AT_ONCE, "let it cool")

@@ -8,6 +8,7 @@ from surefoot.config.robot import Robot
 from surefoot.hw.gate.check import Answer, Check, Latch, Violation
 from surefoot.hw.gate.command_watch import CommandWatch, damps_as_told, drives
 from surefoot.hw.gate.end_stops import EndStops
+from surefoot.hw.gate.imu_watch import ImuWatch
 from surefoot.hw.gate.limiter import Limiter
 from surefoot.hw.gate.limits import Limits
 from surefoot.hw.gate.power_watch import PowerWatch
@@ -41,6 +42,7 @@ class Gate:
         self._commands = CommandWatch(limits, settings)
         self._sensors = SensorWatch(limits, own)
         self._end_stops = EndStops(robot, limits, own)
+        self._imu = ImuWatch(own.imu_stuck_cycles)
         self._power = PowerWatch(own.power)
         self._tilt = TiltWatch(own.tilt_max, own.tilt_filter_s)
         self._limiter = Limiter(limits, own.torque_step)
@@ -116,6 +118,7 @@ class Gate:
         if unusable is None:
             found += [
                 self._tilt.violation(sensors.omega_WB_B, sensors.acc_B, t),
+                self._imu.violation(sensors, driven),
                 self._power.violation(sensors.tau, sensors.dq),
                 self._sensors.heat(sensors),
                 self._end_stops.violation(sensors.q, driven),

@@ -36,9 +36,13 @@ def entry(values, index, value):
 
 
 def cycles(gate, t0, t1, make=lambda t: None, sensors=STILL):
-    """Every cycle from t0 to t1 [s], with the command that `make(t)` gives; whether the last one damped."""
-    for t in np.arange(t0, t1, 0.002):
-        gate.law(make(t), sensors, t)
+    """Every cycle from t0 to t1 [s], with the command that `make(t)` gives; whether the last one damped.
+
+    The gyroscope has a noise: one without is stuck.
+    """
+    for cycle, t in enumerate(np.arange(t0, t1, 0.002)):
+        noise = np.array([0.0, 0.0, 1e-9 * (cycle % 2)])
+        gate.law(make(t), replace(sensors, omega_WB_B=sensors.omega_WB_B + noise), t)
     return gate.damping
 
 

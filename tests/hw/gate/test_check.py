@@ -63,6 +63,7 @@ STOP = LIMITS.lower[CALF] + OWN.stop_margin
 ROWS = {
     Check.TILT: (tilted(OWN.tilt_max - 1e-9), tilted(OWN.tilt_max + 1e-9), "trunk tilts by 1.00 rad, limit 1.00"),
     Check.POWER: (working(500.0), working(up(500.0)), "power is 500 W, limit 500 W"),
+    Check.IMU: ({"times": 50}, {"times": 51}, "accelerometer have not changed for 51 cycles, limit 50"),
     Check.HOT: (hot(80.0), hot(up(80.0)), "motor of FL_thigh has 80 deg C, limit 80: let it cool"),
     Check.END_STOP: (
         sensors(q=entry(STAND, CALF, STOP)), sensors(q=entry(STAND, CALF, nextafter(STOP, -inf))),
