@@ -25,6 +25,8 @@ class Declared(Enum):
     """No motor is driven once a state has told of it and a command has come back."""
     DAMPED_LATE = "damped when the newest state is too old"
     """As above, after `hw.aliengo.stale_s` without a state."""
+    DAMPED_STUCK = "damped when the IMU has been still too long"
+    """As above, after `hw.gate.imu_stuck_cycles` states without a change of it."""
     UNHEARD = "io ends; the robot hears of nothing"
     """Nothing that is decided here reaches the robot."""
     NOTHING = "–"
@@ -79,7 +81,7 @@ FAULTS = (
     RobotFault("hot motor", part("hot motor", "RL_calf"), Declared.DAMPED),
     RobotFault("dead motor", part("dead motor", "RL_calf"), Declared.NOTHING),
     RobotFault("stuck encoder", part("stuck encoder", "RL_calf"), Declared.NOTHING),
-    RobotFault("stuck IMU", part("stuck imu"), Declared.NOTHING),
+    RobotFault("stuck IMU", part("stuck imu"), Declared.DAMPED_STUCK),
 )
 """In the order of the page."""
 
@@ -90,10 +92,11 @@ def damped_within_cycles(deployment: Deployment, declared: Declared) -> int | No
     The state has its way, where it is missing its predecessor grows too old, a cycle later io says so, and damping
     has its way.
     """
-    if declared not in (Declared.DAMPED, Declared.DAMPED_LATE):
+    if declared not in (Declared.DAMPED, Declared.DAMPED_LATE, Declared.DAMPED_STUCK):
         return None
     ways = (deployment.emulator.states, deployment.emulator.commands)
     seconds = sum(way.latency_s + way.jitter_s for way in ways)
     if declared is Declared.DAMPED_LATE:
         seconds += deployment.hw.aliengo.stale_s
-    return ceil(seconds * CYCLE_HZ) + 2
+    still = deployment.hw.gate.imu_stuck_cycles if declared is Declared.DAMPED_STUCK else 0
+    return ceil(seconds * CYCLE_HZ) + still + 2
