@@ -52,7 +52,7 @@ def _name(pid: int, words: list[str]) -> str:
     for command in _COMMANDS:
         if command in words:
             return {"run": "supervisor"}.get(command, command)
-    return str(pid)
+    return "guardian" if "surefoot.tools.guardian" in words else str(pid)
 
 
 def _held(pid: int) -> Held:

@@ -61,6 +61,7 @@ def test_a_run_with_an_emulator_is_sampled_to_its_end(tmp_path):
     code, found = soak(CONFIG, settings, 1.0, 0.5, tmp_path, lambda words: None)
     said = (tmp_path / "run.txt").read_text()
     assert code == 0 and "time is up" in said, said
+    assert "the robot has not stood" in (tmp_path / "emulator.txt").read_text()  # the truth, told when it is ended
     rows = (tmp_path / "samples.csv").read_text()
-    assert all(f",{name}," in rows for name in (*PROCESSES, "supervisor", "emulator"))
+    assert all(f",{name}," in rows for name in (*PROCESSES, "supervisor", "guardian", "emulator"))
     assert {each.name for each in found} >= {"emulator", "supervisor"}

@@ -45,6 +45,7 @@ def _run(call: argparse.Namespace) -> int:
     from surefoot.config.deployment import load_deployment
     from surefoot.hw.emulator.server import EmulatorServer
     from surefoot.hw.errors import HardwareFault
+    from surefoot.tools.end_signals import heed
 
     given = {
         "terrain.kind": call.terrain,
@@ -54,6 +55,7 @@ def _run(call: argparse.Namespace) -> int:
     overrides = [f"{key}={value}" for key, value in given.items() if value is not None]
     deployment = load_deployment(deployment_file(call.scenario), [*overrides, *call.set])
     settings, generation = deployment.emulator, deployment.hw.aliengo.generation
+    heed()
     try:
         server = EmulatorServer(deployment)
         print(
