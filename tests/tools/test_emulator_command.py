@@ -35,5 +35,5 @@ def test_it_answers_in_its_generation_until_it_is_ended(name):
                 assert len(client.recv(2048)) == generation.state.length
         finally:
             process.send_signal(signal.SIGINT)
-        said, complaints = process.communicate()
+        said, complaints = process.communicate(timeout=60.0)
     assert "0.0 s, 1 commands, 1 answers" in said and complaints == "" and process.returncode == 0
