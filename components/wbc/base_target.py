@@ -64,7 +64,7 @@ class BaseTarget:
         return self.held_s > settings.hold_s + settings.lower_m / settings.lower_speed
 
     def at(
-        self, t: float, policy: Policy | None, p_WB: np.ndarray, R_WB: np.ndarray, stance: np.ndarray
+        self, t: float, policy: Policy | None, p_WB: np.ndarray, R_WB: np.ndarray, loads_n: np.ndarray
     ) -> Target:
         """The target at time t.
 
@@ -72,7 +72,8 @@ class BaseTarget:
             t: now [s].
             policy: the MPC's, or None where it is missing or stale.
             p_WB, R_WB: where the base is; held at the start, before there was any target.
-            stance: (4,) feet on the ground.
+            loads_n: (4,) what the feet bear when the robot stands still as it is, above 0 on the ground [N]; it
+                counts without a policy only.
         """
         if self.lowered:
             policy = None  # one that comes back now would make a robot that lies on the ground leap up
@@ -86,7 +87,7 @@ class BaseTarget:
                 self._held = self._last or Target(
                     p_WB.copy(), R_WB.copy(), np.zeros(3), np.zeros(3), np.zeros((4, 3))
                 )
-            source = self._without(t, self._held, stance)
+            source = self._without(t, self._held, loads_n)
             self.held_s = t - self._lost_t
         if self._last is not None and (policy is not None) != self._with_policy:
             self._fade_t, self._gap = t, _difference(self._last, source)
@@ -107,15 +108,38 @@ class BaseTarget:
         R = matrix_of_rpy(x[9:12])
         return Target(x[6:9], R, R @ policy.v[k, :3], R @ policy.v[k, 3:6], policy.u[k, :12].reshape(4, 3))
 
-    def _without(self, t: float, held: Target, stance: np.ndarray) -> Target:
-        """Hold the last pose, then lower it; the feet share the weight."""
+    def _without(self, t: float, held: Target, loads_n: np.ndarray) -> Target:
+        """Hold the last pose, then lower it, on forces that turn nothing: the weight, shared as statics have it.
+
+        Shared alike, they would turn the robot over a leg that the base has been shifted away from. Before the
+        first policy they are: a robot begins in the middle of its feet.
+        """
         settings = self._settings
         sinking = min(max(t - self._lost_t - settings.hold_s, 0.0) * settings.lower_speed, settings.lower_m)
         down = np.array([0.0, 0.0, sinking])
-        force = np.zeros((4, 3))
-        force[stance, 2] = self._weight / max(int(stance.sum()), 1)
+        force, stance = np.zeros((4, 3)), loads_n > 0.0
+        alike = self._weight / max(int(stance.sum()), 1)
+        force[:, 2] = loads_n if held.force_W.any() else alike * stance
         speed = -settings.lower_speed if 0.0 < sinking < settings.lower_m else 0.0
         return Target(held.p_WB - down, held.R_WB, np.array([0.0, 0.0, speed]), np.zeros(3), force)
+
+
+def static_loads(p_WF: np.ndarray, com_W: np.ndarray, stance: np.ndarray, weight_n: float) -> np.ndarray:
+    """(4,) vertical forces of the feet that hold a robot still, the least in squares where more than three stand.
+
+    Their sum is the weight and their moments about the centre of mass cancel. A foot that would have to pull bears
+    a newton: the robot is tipping then, and what the others bear is the best that there is.
+
+    Args:
+        p_WF: (4, 3) feet [m].
+        com_W: (3,) centre of mass [m].
+        stance: (4,) feet on the ground; the others bear nothing.
+        weight_n: of the robot [N].
+    """
+    lever = np.where(stance[:, None], p_WF - com_W, 0.0)
+    balance = np.stack([stance.astype(float), lever[:, 0], lever[:, 1]])
+    loads = np.linalg.pinv(balance) @ np.array([weight_n, 0.0, 0.0])
+    return np.where(stance, np.maximum(loads, 1.0), 0.0)
 
 
 def _difference(a: Target, b: Target) -> tuple[np.ndarray, ...]:

@@ -12,7 +12,7 @@ from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.components.memory import Memory
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotation import log_rotation, matrix_of
-from surefoot.components.wbc.base_target import BaseTarget
+from surefoot.components.wbc.base_target import BaseTarget, static_loads
 from surefoot.components.wbc.momentum_observer import MomentumObserver
 from surefoot.components.wbc.whole_body_qp import QpFailed, Task, WholeBodyQp
 from surefoot.config.deployment import Deployment
@@ -120,7 +120,10 @@ class Wbc(Component):
         trusted = (status == LegStatus.STANCE) | (status == LegStatus.PROBING) | (status == LegStatus.COLLAPSING)
         # Nobody else will tell when a foot that is on its way down has landed.
         stance = trusted | (orphaned & (t > reference.swing_t1) & estimate.contact)
-        target = self._target.at(t, policy, estimate.p_WB, R, stance)
+        loads_n = np.zeros(4)
+        if policy is None:
+            loads_n = static_loads(estimate.p_WF, qp.com_W, stance, qp.mass * GRAVITY)
+        target = self._target.at(t, policy, estimate.p_WB, R, loads_n)
         if self._target.lowered:
             return self._damp(t, "no policy came back: the base has been lowered; command sit, then stand")
         self._observe(t, reference)

@@ -3,11 +3,12 @@
 import numpy as np
 
 from surefoot.bus.messages import Policy
-from surefoot.components.wbc.base_target import BaseTarget
+from surefoot.components.wbc.base_target import BaseTarget, static_loads
 from surefoot.config.wbc import Wbc
 
-STANCE = np.ones(4, bool)
 WEIGHT, DT = 240.0, 0.004
+LOADS = np.full(4, WEIGHT / 4)
+FEET = np.array([[0.24, 0.14, 0.0], [0.24, -0.14, 0.0], [-0.24, 0.14, 0.0], [-0.24, -0.14, 0.0]])
 
 
 def policy(t, height=0.4, pitch=0.0, force=60.0):
@@ -22,7 +23,7 @@ def follow(target, script, t0, t1):
     """Targets over time; `script(t)` gives the policy or None."""
     times = t0 + DT * np.arange(round((t1 - t0) / DT))
     p, R = np.array([0.0, 0.0, 0.4]), np.eye(3)
-    return [target.at(t, script(t), p, R, STANCE) for t in times]
+    return [target.at(t, script(t), p, R, LOADS) for t in times]
 
 
 def test_a_young_policy_is_followed_to_the_letter():
@@ -59,3 +60,30 @@ def test_neither_loss_nor_return_of_the_policy_is_a_jump():
     assert np.abs(np.diff(forces)).max() < 1.0
     assert np.abs(np.diff(pitch)).max() < 1e-3
     assert heights[-1] == 0.42 and forces[-1] == 90.0
+
+
+def moments(loads, com):
+    """About the centre of mass, of x and y levers [N m]."""
+    return (loads[:, None] * (FEET - com)[:, :2]).sum(axis=0)
+
+
+def test_what_statics_have_the_feet_bear_turns_nothing():
+    rng = np.random.default_rng(2)
+    for _ in range(50):
+        com = np.array([*rng.uniform(-0.08, 0.08, 2), 0.4])
+        loads = static_loads(FEET, com, np.ones(4, bool), WEIGHT)
+        np.testing.assert_allclose(loads.sum(), WEIGHT)
+        np.testing.assert_allclose(moments(loads, com), 0.0, atol=1e-9)
+    np.testing.assert_allclose(static_loads(FEET, np.zeros(3), np.ones(4, bool), WEIGHT), WEIGHT / 4)
+
+
+def test_three_feet_bear_what_is_theirs_and_one_in_the_air_nothing():
+    com, stance = np.array([0.05, -0.02, 0.4]), np.array([True, True, False, True])
+    loads = static_loads(FEET, com, stance, WEIGHT)
+    assert loads[2] == 0.0 and (loads[stance] > 1.0).all()
+    np.testing.assert_allclose(moments(loads, com), 0.0, atol=1e-9)
+
+
+def test_a_foot_does_not_pull():
+    loads = static_loads(FEET, np.array([-0.1, 0.1, 0.4]), np.array([True, True, False, True]), WEIGHT)
+    assert loads.min() == 0.0 and loads[[0, 1, 3]].min() == 1.0
