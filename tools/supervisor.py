@@ -15,6 +15,7 @@ from surefoot.tools.end_signals import deaf
 from surefoot.tools.handovers import Handovers
 from surefoot.tools.launcher import Launcher, end_process
 from surefoot.tools.lending import Lending
+from surefoot.tools.parting import Parting
 from surefoot.tools.picture import Picture, Watched
 from surefoot.tools.recording.recorder_process import NAME as RECORDER
 from surefoot.tools.recording.recorder_process import RecorderProcess
@@ -80,6 +81,7 @@ class Supervisor:
         self._handovers = Handovers(self.picture, self._launcher, self.note)
         self._policy = RestartPolicy(self.picture, self._handovers)
         self._queue = RestartQueue(self.picture, _UP_AGAIN_S)
+        self._parting = Parting(deployment, self.picture, self.command, self.note)
         self._lending = Lending(self.picture, self._desk.answer, self.note)
 
     def run(self, until: Callable[[Picture], str], each: Callable[[Picture], None] = lambda picture: None) -> str:
@@ -269,9 +271,11 @@ class Supervisor:
                 watched.out = f"{what.removeprefix(watched.name).strip()}; it waits for its source to change"
                 self.note(f"{watched.name} {watched.out}")
                 continue
-            watched.crashes += 1
             if watched.name == "io" or not self._simulated:
-                return what
+                if reason := self._parting.lost(watched.name, what):
+                    return reason
+                continue
+            watched.crashes += 1
             if watched.crashes > MAX_CRASHES:
                 return f"{what}; it had been restarted {MAX_CRASHES} times"
             self._start_again(watched)

@@ -43,11 +43,11 @@ class Child:
 
 
 class Fake(Supervisor):
-    """Starts no process; `launched` is what it would have started."""
+    """Starts no process; `launched` is what it would have started, `commands` what the robot was told."""
 
     def __init__(self, *args):
         super().__init__(*args)
-        self.launched = []
+        self.launched, self.commands = [], []
         self._launcher.launch = self._launch
         for watched in self.picture.processes.values():
             watched.popen = Child()
@@ -55,6 +55,9 @@ class Fake(Supervisor):
     def _launch(self, name, boot, *words):
         self.launched.append((name, boot, *words))
         return Child()
+
+    def command(self, command):
+        self.commands.append(command)
 
     @property
     def notes(self):
@@ -103,7 +106,16 @@ def test_in_real_time_a_successor_is_ready_before_its_predecessor_leaves(restart
     assert supervisor._reconcile() == "" and watched.popen is not before and watched.restarts == 1
     assert supervisor.notes[-1] == f"{name} restarted on request"
     watched.popen.code = 1
-    assert f"{name} ended with exit code 1" in supervisor._reconcile()
+    assert f"{name} ended with exit code 1" in (supervisor._reconcile() or supervisor.notes[-1])
+
+
+def test_in_real_time_a_process_that_ends_lets_the_robot_sit_down_first(restart):
+    supervisor = restart("trajopt", "STAND")
+    supervisor.picture.processes["mpc"].popen.code = -9
+    assert supervisor._reconcile() == "" and supervisor._reconcile() == ""
+    assert supervisor.commands == ["sit: mpc has ended"] and "mpc ended with signal 9" in supervisor.notes[-1]
+    supervisor.picture.reference = MotionReference(state="DAMP")
+    assert "mpc ended with signal 9" in supervisor._reconcile()
 
 
 def test_a_process_goes_on_if_its_successor_fails(restart):

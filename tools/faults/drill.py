@@ -22,6 +22,7 @@ from surefoot.tools.faults.reference_run import first_difference
 PAUSE_S = 1.0
 _GO_ON_S = 0.06
 _SETTLE_S = 4.0
+_END_S = 12.0  # the robot sits down before the run ends
 _STANDS_M = 0.30  # height of the trunk that no robot has that lies
 _TILT = 0.5  # more than the state machine lets pass for standing or lying [rad]
 _SAID = {"kill": "{} ended with", "restart": "restart", "pause": "simulated time waits"}
@@ -137,7 +138,7 @@ class Drill:
                 run.signal(name, signal.SIGKILL)
             else:
                 run.restart(name)
-            end = time.monotonic() + _SETTLE_S
+            end = time.monotonic() + (_END_S if case.fault == "kill" else _SETTLE_S)
             while time.monotonic() < end and not run.over:
                 time.sleep(0.05)
             result = self._judge_monotonic(run, case, t, truths, mark)

@@ -14,7 +14,7 @@ WORDS = {
     "trajopt": "the robot stands and waits for the plan",
     "elevation_map": "the robot stands and waits for its footholds",
 }
-"""Of each process; one that ends by itself ends the run too, which damps at once."""
+"""Of each process; one that ends by itself ends the run too, once the robot has sat down where it can."""
 
 
 def damped_within_s(deployment: Deployment, process: str) -> float | None:
