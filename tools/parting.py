@@ -12,7 +12,6 @@ from surefoot.tools.picture import Picture
 _CANNOT_SETTLE = ("io", "estimator", "wbc")
 """Without one of these the robot is damped by the gate, or not reached at all, before anybody could act."""
 
-
 _MORE_S = 0.2  # after the controller has lowered the robot by itself
 
 
@@ -40,16 +39,18 @@ class Parting:
 
     def lost(self, name: str, what: str) -> str:
         """Called while a process is gone: why the run ends now, or "" while the robot settles."""
-        if name in _CANNOT_SETTLE:
+        if name in _CANNOT_SETTLE or self._settled:
             return what
         if self._until is None:
             self._until = time.monotonic() + (self._alone_s if name == "fsm" else self._settle_s)
             self._note(f"{what}; the robot sits down before the run ends")
             if name != "fsm":
                 self._command(f"sit: {name} has ended")
-        return what if self._settled or time.monotonic() >= self._until else ""
+        return what if time.monotonic() >= self._until else ""
 
     @property
     def _settled(self) -> bool:
         hardware, reference = self._picture.hardware, self._picture.reference
-        return (hardware is not None and hardware.damping) or (reference is not None and reference.state == "DAMP")
+        if hardware is None or hardware.damping:
+            return True  # it has not begun, or the gate has seen to it
+        return reference is not None and reference.state == "DAMP"

@@ -12,8 +12,11 @@ WHAT = "it ended with signal 9"
 
 
 class Run:
-    def __init__(self, settle_s=60.0, **heard):
-        self.picture, self.commands, self.notes = Picture(**heard), [], []
+    """A robot that probes."""
+
+    def __init__(self, settle_s=60.0):
+        self.picture = Picture(reference=MotionReference(state="PROBE"), hardware=HardwareState())
+        self.commands, self.notes = [], []
         deployment = Deployment(operator=Operator(settle_s=settle_s))
         self.parting = Parting(deployment, self.picture, self.commands.append, self.notes.append)
 
@@ -23,7 +26,7 @@ class Run:
 
 @pytest.mark.parametrize("name", ["mpc", "trajopt", "elevation_map"])
 def test_the_robot_is_told_once_to_sit_and_the_run_ends_when_it_is_damped(name):
-    run = Run(reference=MotionReference(state="PROBE"), hardware=HardwareState())
+    run = Run()
     assert [run.lost(name) for _ in range(3)] == ["", "", ""]
     assert run.commands == [f"sit: {name} has ended"] and run.notes == [
         f"{WHAT}; the robot sits down before the run ends"
@@ -33,7 +36,7 @@ def test_the_robot_is_told_once_to_sit_and_the_run_ends_when_it_is_damped(name):
 
 
 def test_without_a_state_machine_the_controller_lowers_the_robot_by_itself():
-    run = Run(reference=MotionReference(state="PROBE"))
+    run = Run()
     assert run.lost("fsm") == "" and run.commands == []
     run.picture.hardware = HardwareState(damping=True)
     assert run.lost("fsm") == WHAT
@@ -48,3 +51,9 @@ def test_it_is_not_waited_for_longer_than_it_may_take_and_another_loss_is_not_wa
     assert Run(settle_s=0.0).lost("mpc") == WHAT
     run = Run()
     assert run.lost("mpc") == "" and run.lost("wbc") == WHAT
+
+
+def test_before_the_robot_has_begun_nothing_is_waited_for():
+    run = Run()
+    run.picture.hardware = None
+    assert run.lost("mpc") == WHAT

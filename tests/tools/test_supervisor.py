@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 
 from surefoot.bus.errors import BusError
-from surefoot.bus.messages import MotionReference, ProcessStatus
+from surefoot.bus.messages import HardwareState, MotionReference, ProcessStatus
 from surefoot.bus.topics import PROCESSES
 from surefoot.components import clock_messages as clock
 from surefoot.config.deployment import Deployment, Run
@@ -111,6 +111,7 @@ def test_in_real_time_a_successor_is_ready_before_its_predecessor_leaves(restart
 
 def test_in_real_time_a_process_that_ends_lets_the_robot_sit_down_first(restart):
     supervisor = restart("trajopt", "STAND")
+    supervisor.picture.hardware = HardwareState()
     supervisor.picture.processes["mpc"].popen.code = -9
     assert supervisor._reconcile() == "" and supervisor._reconcile() == ""
     assert supervisor.commands == ["sit: mpc has ended"] and "mpc ended with signal 9" in supervisor.notes[-1]
