@@ -79,7 +79,7 @@ class OperatorDesk:
             command = asked.decode(errors="replace")
             if len(command) > _LONGEST or not command.isprintable() or "\ufffd" in command:
                 self._refuse(f"{clock.REQUEST}: {asked[:_LONGEST]!r:.80} is no command")
-            elif command not in _ALONE and (missing := self._heartbeat.missing):
+            elif command.partition(": ")[0] not in _ALONE and (missing := self._heartbeat.missing):
                 self._refuse(
                     f"{clock.REQUEST}: {command}: {missing}; start surefoot heartbeat, then command again"
                 )

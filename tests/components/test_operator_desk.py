@@ -99,3 +99,11 @@ def test_before_the_first_heartbeat_nothing_moves_either(side):
     one = side(heartbeat_s=2.0)
     one.say(REQUEST, "stand")
     assert one.commands() == [] and "no heartbeat yet; start surefoot heartbeat" in one.refused[0]
+
+
+def test_what_stops_the_robot_passes_without_a_heartbeat_whatever_its_reason(side):
+    one = side(heartbeat_s=2.0)
+    for command in ("sit: mpc has ended", "cut", "stand: sit"):
+        one.say(REQUEST, command)
+    assert [command for _, command in one.commands()] == ["sit: mpc has ended", "cut"]
+    assert "stand: sit: no heartbeat" in one.refused[0]
