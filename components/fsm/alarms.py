@@ -90,6 +90,10 @@ class Alarms:
         if not why:
             return None
         self._event("rejected", why, now.estimate.p_WF[turn.leg])
+        if motion.in_air and turn.no_way_back:
+            # It has just come from there. To look again and again would keep the base where it cannot stay.
+            self._leave(turn.leg, now)
+            return Arrow(State.STOPPED, f"{why}; {turn.no_way_back}")
         if motion.in_air:
             turn.halt = why
             return Arrow(State.RETURN_SAFE, why)
@@ -97,7 +101,7 @@ class Alarms:
         return Arrow(State.STOPPED, why)
 
     def _leave(self, leg: int, now: Observation) -> None:
-        """The base sets off from a foot that sinks without waiting for a plan."""
+        """The base sets off over the other three feet without waiting for a plan."""
         feet, normal = now.estimate.p_WF, now.estimate.normal_W
         heading = self._course.heading
         pose = self._planner.support_pose(leg, feet[leg], feet, normal, heading, now.com_B, np.zeros(3))

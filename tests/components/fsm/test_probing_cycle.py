@@ -198,6 +198,19 @@ def test_without_ground_to_go_back_to_the_robot_rests_on_three_feet():
     assert puppet.kinds("accepted")[0][2]["leg"] == RL
 
 
+def test_a_leg_without_a_way_back_looks_for_it_once_also_off_balance():
+    puppet = Puppet()
+    puppet.reach("DETECT_CONTACT")
+    puppet.run(0.2)
+    puppet.ground_z[RL], puppet.tilt = -1.0, 0.5
+    puppet.reach("STOPPED")
+    assert "base tilted" in puppet.cycle.reason and "no ground to go back to" in puppet.cycle.reason
+    assert puppet.cycle.reference.support_leg == RL
+    puppet.run(5.0)
+    assert puppet.cycle.state == "STOPPED"
+    assert len([event for event in puppet.kinds("transition") if event[3] == "RETURN_SAFE"]) == 1
+
+
 def resting_on_three(leg):
     """A robot that has lost the ground under a leg of the crawl, and has it in the air."""
     puppet = Puppet()
