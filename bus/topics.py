@@ -40,6 +40,7 @@ class Process:
         trigger: the topic whose messages release it; empty for a timer.
         every: releases on every n-th message of the trigger.
         budget_s: logical execution time.
+        urgency: on the monotonic clock the more urgent interrupts the less; 0: as any program, it may be late.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Process:
     trigger: str = ""
     every: int = 1
     budget_s: float = 0.0
+    urgency: int = 0
 
 
 CYCLE_HZ = 500.0
@@ -68,11 +70,11 @@ def processes(mpc_profile: str = "paper") -> dict[str, Process]:
     """The process table, in the order in which processes released at the same instant step."""
     mpc_hz = MPC_RATE_HZ[mpc_profile]
     table = (
-        Process("io", rate_hz=CYCLE_HZ),
-        Process("estimator", trigger="hw/state", budget_s=0.001),
-        Process("wbc", trigger="state/estimate", every=_WBC_EVERY, budget_s=0.001),
-        Process("mpc", rate_hz=mpc_hz, budget_s=1.0 / mpc_hz),
-        Process("fsm", rate_hz=_FSM_HZ, budget_s=0.002),
+        Process("io", rate_hz=CYCLE_HZ, urgency=5),
+        Process("estimator", trigger="hw/state", budget_s=0.001, urgency=4),
+        Process("wbc", trigger="state/estimate", every=_WBC_EVERY, budget_s=0.001, urgency=3),
+        Process("mpc", rate_hz=mpc_hz, budget_s=1.0 / mpc_hz, urgency=1),
+        Process("fsm", rate_hz=_FSM_HZ, budget_s=0.002, urgency=2),
         Process("trajopt", trigger="trajopt/request", budget_s=0.100),
         Process("elevation_map", rate_hz=_MAP_HZ, budget_s=0.020),
     )

@@ -14,6 +14,7 @@ from surefoot.components.component import Life
 from surefoot.components.deployment_desk import check_settings, serve_deployment
 from surefoot.components.operator_desk import OperatorDesk
 from surefoot.components.process_end import ProcessEnd
+from surefoot.components.real_time import claim
 from surefoot.components.registry import component_class
 from surefoot.components.relief import GIVE, SHOW, Relief
 from surefoot.components.run_clock import AnotherRun, run_clock, serve_time
@@ -69,6 +70,8 @@ class Runner:
         self._stepper.connect()  # a process that is busy with itself would hold up the bus
         health.life = Life.IDLE
         self._stepper.look = self._look
+        if self._monotonic:
+            self._claim_priority()
         try:
             if self._relieves:
                 self._take_over()
@@ -77,6 +80,12 @@ class Runner:
             self._stepper.close()
             self._session.close()
         return 0
+
+    def _claim_priority(self) -> None:
+        """Come before ordinary programs where the machine permits it; where it does not, the run has said so."""
+        base, urgency = self._deployment.run.realtime_priority, self._process.urgency
+        if base and urgency:
+            claim(base + urgency)
 
     def _follow(self) -> None:
         """Step until the end, then let go of the robot, also after a failure.

@@ -40,6 +40,7 @@ class Run:
     log_dir: str = "log"  # where process logs go, relative to the working directory
     solve_share_max: Annotated[float, Within(0.05, 1.0)] = 0.6  # of 10 ms; slower machines run mpc.profile light
     cores_min: Annotated[int, Within(1, 256)] = 4  # likewise with fewer cores: seven processes share them
+    realtime_priority: Annotated[int, Within(0, 90)] = 40  # monotonic clock: of the control chain; 0: none asked
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Za-z0-9_-]+", self.namespace):

@@ -10,7 +10,7 @@ from surefoot.config.deployment import Deployment
 from surefoot.config.typed_toml import to_table
 
 _OWN = {
-    "run": ("command", "epoch_s", "log_dir", "solve_share_max", "cores_min"),
+    "run": ("command", "epoch_s", "log_dir", "solve_share_max", "cores_min", "realtime_priority"),
     "hw": ("unit",),
     "network": ("host", "listen", "address", "keys_dir", "insecure"),
 }

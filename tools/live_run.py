@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rich.console import Console, Group
 
+from surefoot.components.real_time import refusal
 from surefoot.config.deployment import Deployment, load_deployment
 from surefoot.tools.commands.call import CallError
 from surefoot.tools.doctor.check import failures
@@ -76,7 +77,7 @@ def live_run(call: RunCall) -> int:
     watch = SourceWatch() if call.reload else None
     supervisor = Supervisor(call.config, overrides, deployment, watch, call.record, beats)
     warning = check_space(call.record) if call.record is not None else ""
-    for told in filter(None, (warning, note)):
+    for told in filter(None, (warning, note, _refused_priority(deployment))):
         supervisor.note(told)
     title = _title(call.config.name, deployment)
     console.print(f"{title}; logs in {deployment.run.log_dir}/; Ctrl-C ends the run")
@@ -103,6 +104,12 @@ def _checked(call: RunCall) -> Deployment:
     if call.record is not None and not deployment.network.at_hub:
         raise CallError(f"--record is for {deployment.network.hub}, the machine of io: all journals meet there")
     return deployment
+
+
+def _refused_priority(deployment: Deployment) -> str:
+    """Why the control chain has to go without real-time priority; empty where it has it, or none is asked."""
+    run = deployment.run
+    return refusal(run.realtime_priority) if run.clock == "monotonic" and run.realtime_priority else ""
 
 
 def _title(name: str, deployment: Deployment) -> str:
