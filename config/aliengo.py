@@ -70,6 +70,8 @@ class Aliengo:
     local_port: Annotated[int, Within(0, 65535)] = 8082  # as in the vendor's examples, G0's have 8008; 0: any
     damping: Literal["gain", "brake"] = "gain"  # the safe state: hw.damping_kd alone, or the motors' brake mode
     law_timeout_s: Annotated[float, Within(0.004, 1.0)] = 0.020  # an older law is not sent any more: damping
+    # Between two commands at the least [s]: what the vendor's examples allow as a period; their own is 0.002.
+    gap_s: Annotated[float, Within(0.0005, 0.002)] = 0.001
     stale_s: Annotated[float, Within(0.004, 1.0)] = 0.050  # an older state is a fault
     first_answer_s: Annotated[float, Within(0.05, 60.0)] = 3.0  # how long the first good state is awaited
     tick_unit: Literal["auto", "us", "ms", "none"] = "auto"  # the vendor says both; none: time by arrival

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable, Iterator
-from contextlib import closing
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import replace
 from threading import Event, Thread
 from time import perf_counter, process_time, sleep, thread_time
@@ -16,6 +16,7 @@ from surefoot.bus.topics import CYCLE_HZ
 from surefoot.config.deployment import Deployment
 from surefoot.hw.aliengo.aliengo_state import AliengoState
 from surefoot.hw.aliengo.command_packet import decode_command, encode_command
+from surefoot.hw.aliengo.deadlines import Deadlines
 from surefoot.hw.aliengo.driver import AliengoDriver
 from surefoot.hw.aliengo.generation import GENERATIONS
 from surefoot.hw.aliengo.plausibility import Plausibility
@@ -25,7 +26,8 @@ from surefoot.hw.robot_interface import MotorLaw
 
 _REPEATS = 2000
 _LAWS = 3  # at the least, however slow the machine is
-_PAUSE_S = 0.0093  # between laws: no whole number of cycles, so that every moment of one is met
+_CYCLE_S = 1.0 / CYCLE_HZ
+_ODD_S = (0.008, 0.012)  # between laws that come at any moment, drawn: evenly over two cycles
 
 
 def wire_bench(seconds: float = 5.0) -> dict[str, Any]:
@@ -35,20 +37,26 @@ def wire_bench(seconds: float = 5.0) -> dict[str, Any]:
         seconds: of wall time, for what depends on it.
 
     Returns:
-        `codec_us`: processor time of each encoder and decoder; `jitter_ms`: median and p99 of how far the
-        distances of commands are from 2 ms; `to_wire_ms`: median, p99 and maximum from `write` to the arrival at a
-        socket of this machine; `cpu_share` of a core that the driver takes; `commands` that have come.
+        `codec_us`: processor time of each encoder and decoder. Of laws written in every cycle: `jitter_ms`, median
+        and p99 of how far the distances of commands are from 2 ms; `to_wire_ms`, median, p99 and maximum from
+        `write` to the arrival at a socket of this machine; `cpu_share` of a core that the driver takes; `commands`
+        that have come. `odd_to_wire_ms`: of laws written at any moment.
     """
     deployment = Deployment()
-    return {"codec_us": _codec(deployment)} | _exchange(deployment, seconds)
+    return (
+        {"codec_us": _codec(deployment)}
+        | _in_every_cycle(deployment, seconds)
+        | _at_odd_moments(deployment, seconds)
+    )
 
 
 def rows(found: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
     """What was found, as rows `what, asked, got`."""
-    to_wire, jitter = found["to_wire_ms"], found["jitter_ms"]
+    jitter = found["jitter_ms"]
     yield "driver: commands off 2 ms, median, p99 [ms]", "", f"{jitter['p50']:6.3f} {jitter['p99']:6.3f}"
-    spread = f"{to_wire['p50']:6.2f} {to_wire['p99']:6.2f} {to_wire['max']:6.2f}"
-    yield "  from write to the wire, median, p99, max [ms]", "", spread
+    for what, name in (("from write to the wire", "to_wire_ms"), ("at odd moments", "odd_to_wire_ms")):
+        spread = "{p50:6.2f} {p99:6.2f} {max:6.2f}".format(**found[name])
+        yield f"  {what}, median, p99, max [ms]", "", spread
     yield "  share of a core", "", f"{found['cpu_share']:6.3f}"
     yield "packets [us]", "", "  ".join(f"{name} {us:.0f}" for name, us in found["codec_us"].items())
 
@@ -75,36 +83,54 @@ def _mean_us(work: Callable[[], object]) -> float:
     return 1e6 * (process_time() - begun) / _REPEATS
 
 
-def _exchange(deployment: Deployment, seconds: float) -> dict[str, Any]:
-    with closing(_Peer(deployment)) as peer:
-        wire = replace(deployment.hw.aliengo, address="127.0.0.1", port=peer.port, local_port=0)
-        driver = AliengoDriver(deployment.load_robot(), wire, deployment.hw.damping_kd)
-        with closing(driver):
-            written: dict[int, float] = {}
-            cpu, peers, begun = process_time(), peer.cpu_s, perf_counter()
-            first = len(peer.arrivals)
-            while perf_counter() - begun < seconds or len(peer.first) < _LAWS:
-                number = len(written) + 1
-                law = _law(number / 256.0)
-                written[number] = perf_counter()
-                driver.write(law)
-                driver.advance()
-                sleep(_PAUSE_S)
-            wall = perf_counter() - begun
-            used = process_time() - cpu - (peer.cpu_s - peers)
-            arrivals = np.array(peer.arrivals[first:])
-            to_wire = [peer.first[number] - t for number, t in written.items() if number in peer.first]
-    off = np.abs(np.diff(arrivals) - 1.0 / CYCLE_HZ)
+def _in_every_cycle(deployment: Deployment, seconds: float) -> dict[str, Any]:
+    with _talk(deployment) as (driver, peer):
+        first, cpu, peers, begun = len(peer.arrivals), process_time(), peer.cpu_s, perf_counter()
+        deadlines = Deadlines(_CYCLE_S, begun)
+        to_wire = _to_wire(driver, peer, seconds, lambda: deadlines.following(perf_counter())[0] - perf_counter())
+        used, wall = process_time() - cpu - (peer.cpu_s - peers), perf_counter() - begun
+        arrivals = np.array(peer.arrivals[first:])
+    off = np.abs(np.diff(arrivals) - _CYCLE_S)
     return {
-        "jitter_ms": {"p50": 1e3 * float(np.median(off)), "p99": 1e3 * float(np.percentile(off, 99))},
-        "to_wire_ms": {
-            "p50": 1e3 * float(np.median(to_wire)),
-            "p99": 1e3 * float(np.percentile(to_wire, 99)),
-            "max": 1e3 * max(to_wire),
-        },
+        "jitter_ms": _spread(off),
+        "to_wire_ms": _spread(to_wire),
         "cpu_share": used / wall,
         "commands": len(arrivals),
     }
+
+
+def _at_odd_moments(deployment: Deployment, seconds: float) -> dict[str, Any]:
+    rng = np.random.default_rng(0)
+    with _talk(deployment) as (driver, peer):
+        return {"odd_to_wire_ms": _spread(_to_wire(driver, peer, seconds, lambda: rng.uniform(*_ODD_S)))}
+
+
+@contextmanager
+def _talk(deployment: Deployment) -> Iterator[tuple[AliengoDriver, _Peer]]:
+    with closing(_Peer(deployment)) as peer:
+        wire = replace(deployment.hw.aliengo, address="127.0.0.1", port=peer.port, local_port=0)
+        with closing(AliengoDriver(deployment.load_robot(), wire, deployment.hw.damping_kd)) as driver:
+            yield driver, peer
+
+
+def _to_wire(driver: AliengoDriver, peer: _Peer, seconds: float, pause_s: Callable[[], float]) -> list[float]:
+    """How long laws of different torques take to arrive [s], with pauses between them; those that do."""
+    written: dict[int, float] = {}
+    begun = perf_counter()
+    while perf_counter() - begun < seconds or len(peer.first) < _LAWS:
+        number = len(written) + 1
+        law = _law(number / 256.0)
+        written[number] = perf_counter()
+        driver.write(law)
+        driver.advance()
+        sleep(max(pause_s(), 0.0))
+    return [peer.first[number] - t for number, t in written.items() if number in peer.first]
+
+
+def _spread(seconds: Sequence[float] | np.ndarray) -> dict[str, float]:
+    """Median, p99 and maximum [ms]."""
+    ms = 1e3 * np.asarray(seconds)
+    return {"p50": float(np.median(ms)), "p99": float(np.percentile(ms, 99)), "max": float(ms.max())}
 
 
 class _Peer:

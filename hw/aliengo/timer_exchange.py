@@ -1,19 +1,19 @@
-"""A command every two milliseconds, on a thread of its own: how a real robot is spoken to."""
+"""Commands and states with a thread that keeps time: how a real robot is spoken to."""
 
 from __future__ import annotations
 
 import atexit
 from math import inf
-from threading import Condition, Event, Thread
+from threading import Condition, Event, Lock, Thread
 from time import monotonic, sleep
 
 from surefoot.bus.topics import CYCLE_HZ
 from surefoot.config.aliengo import Aliengo
 from surefoot.hw.aliengo.complaint import complaint
-from surefoot.hw.aliengo.deadlines import Deadlines
 from surefoot.hw.aliengo.exchange import LAST_COMMANDS
 from surefoot.hw.aliengo.link import Link
 from surefoot.hw.aliengo.link_statistics import LinkRecorder
+from surefoot.hw.aliengo.pace import Pace
 from surefoot.hw.aliengo.plausibility import Plausibility
 from surefoot.hw.aliengo.state_feed import StateFeed, TimedState
 from surefoot.hw.aliengo.tick_clock import TickClock
@@ -27,8 +27,9 @@ _PATIENCE_S = 10 * _PERIOD_S  # after a stall of this machine the robot answers 
 class TimerExchange:
     """Exchanges a command for a state at 500 Hz from construction to `close`.
 
-    The robot speaks only when spoken to, and what it does when commands stop is not documented: so one is sent in
-    every cycle. It is the newest order; an order older than `law_timeout_s` is replaced by the safe state.
+    An order leaves at once, from the caller's own thread. The robot speaks only when spoken to, and what it does
+    when commands stop is not documented: so where no order comes the thread here sends the newest again. One that
+    is older than `law_timeout_s` is replaced by the safe state.
     """
 
     def __init__(self, settings: Aliengo, plausibility: Plausibility, damp: bytes, recorder: LinkRecorder):
@@ -45,6 +46,10 @@ class TimerExchange:
         """
         self._settings, self._damp, self._recorder = settings, damp, recorder
         self._order = (damp, inf)  # a packet, and until when it may be sent
+        self._pace = Pace(_PERIOD_S, settings.gap_s, monotonic())
+        self._sent, self._overruns = inf, 0  # of the last command
+        self._answered: float | None = None
+        self._sending = Lock()  # of all that is told of commands: two threads send
         self._feed = StateFeed(settings, plausibility, recorder, TickClock(settings.tick_unit))
         self._news = Condition()
         self._ending = Event()
@@ -66,11 +71,15 @@ class TimerExchange:
         return self.newest.sensors
 
     def order(self, packet: bytes | None) -> None:
-        until = monotonic() + self._settings.law_timeout_s
-        self._order = (self._damp, inf) if packet is None else (packet, until)
+        with self._sending:
+            now = monotonic()
+            until = now + self._settings.law_timeout_s
+            self._order = (self._damp, inf) if packet is None else (packet, until)
+            if self._pace.order(now) and not self._ending.is_set():
+                self._send(now)
 
     def end_cycle(self) -> None:
-        """Nothing: the thread's cycles are its own."""
+        """Nothing: the robot's cycles are the pace's."""
 
     def close(self) -> None:
         """Damp, often enough for the robot to hear it, and end."""
@@ -78,32 +87,43 @@ class TimerExchange:
         self._thread.join()
         atexit.unregister(self.close)
         if self._link.is_open:
+            with self._sending:
+                self._note_last()
             for _ in range(LAST_COMMANDS):
                 self._link.send(self._damp)
                 sleep(_PERIOD_S)
             self._link.close()
 
     def _exchange(self) -> None:
-        deadlines = Deadlines(_PERIOD_S, monotonic())
         while not self._ending.is_set():
-            sent = monotonic()
-            packet, until = self._order
-            self._link.send(packet if sent <= until else self._damp)
-            deadline, overruns = deadlines.following(monotonic())
-            self._recorder.command(sent, self._listen(deadline), overruns)
+            if self._link.wait(self._pace.look(monotonic()) - monotonic()):
+                self._listen(monotonic())
+            with self._sending:
+                now = monotonic()
+                if now >= self._pace.due:
+                    self._send(now)
 
-    def _listen(self, deadline: float) -> float | None:
-        """Take what comes until the next command is due; when the first new state came."""
-        answered = None
-        while self._link.wait(deadline - monotonic()):
-            arrived = monotonic()
-            if self._feed.take(self._link.drain(), arrived):
-                answered = answered or arrived
-                with self._news:
-                    self._news.notify_all()
-            if arrived >= deadline:
-                break
-        return answered
+    def _send(self, now: float) -> None:
+        """The order, unless it is too old; whoever calls this holds `_sending`."""
+        packet, until = self._order
+        self._link.send(packet if now <= until else self._damp)
+        self._note_last()
+        self._sent, self._answered, self._overruns = now, None, self._pace.left(now)
+
+    def _note_last(self) -> None:
+        """The answer to a command may come until the next one leaves."""
+        if self._sent < inf:
+            self._recorder.command(self._sent, self._answered, self._overruns)
+
+    def _listen(self, arrived: float) -> None:
+        """Take what has come by a time [s]."""
+        if not self._feed.take(self._link.drain(), arrived):
+            return
+        with self._sending:
+            if self._answered is None and arrived >= self._sent:
+                self._answered = arrived
+        with self._news:
+            self._news.notify_all()
 
     def _fresh(self) -> TimedState | None:
         newest = self._feed.newest
