@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from surefoot.bus.messages import ControlMode, HardwareState, LegStatus, StateEstimate
+from surefoot.bus.messages import ControlMode, HardwareState, LegStatus, MotionReference, StateEstimate
 from surefoot.bus.topics import TOPICS
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.estimator.contact_aided_filter import ContactAidedFilter
@@ -20,6 +20,7 @@ from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
 
 _MAX_GAP_S = 0.02
+_ROUNDING_S = 1e-9  # of the times of one reading
 _REST_TOLERANCE = 1.0  # [m/s^2]
 
 
@@ -73,11 +74,23 @@ class Estimator(Component):
         return ""
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        """An estimate for every message; of a reading that comes again, as on a link that lost one, the same."""
         state = inbox.fresh("hw/state", t)
         if state is None:
             return
-        q, dq = state.q.reshape(4, 3), state.dq.reshape(4, 3)
+        q = state.q.reshape(4, 3)
         p_BF, J_B = self._legs.position(q), self._legs.jacobian(q)
+        if self._last_t is None or state.t > self._last_t + _ROUNDING_S:
+            force_W, healthy = self._take(state, p_BF, J_B, inbox.fresh("fsm/reference", t))
+        else:
+            force_W, healthy = self._force_B @ self._filter.R_WB.T, True
+        self._publish(state, p_BF, J_B, force_W, healthy, outbox)
+
+    def _take(
+        self, state: HardwareState, p_BF: np.ndarray, J_B: np.ndarray, reference: MotionReference | None
+    ) -> tuple[np.ndarray, bool]:
+        """Take in a reading; filtered forces in the world (4, 3) [N], and whether the filter is sound."""
+        q, dq = state.q.reshape(4, 3), state.dq.reshape(4, 3)
         dt = self._dt
         if self._last_t is None:
             self._begin(state, p_BF)
@@ -86,7 +99,6 @@ class Estimator(Component):
             self._filter.predict(state.omega_WB_B, state.acc_B, dt)
         self._last_t = state.t
         contact, force_W = self._contacts(state, J_B)
-        reference = inbox.fresh("fsm/reference", t)
         status = reference.leg_status if reference is not None else np.full(4, LegStatus.STANCE)
         probing = status == LegStatus.PROBING
         stance = contact & ((status == LegStatus.STANCE) | probing)
@@ -96,7 +108,9 @@ class Estimator(Component):
         if damped and not stance.any() and self._lies_still(state):
             self._filter.rest()
         healthy = self._guard(state, p_BF)
-        self._publish(state, p_BF, J_B, dq, contact, force_W, healthy, outbox)
+        self._contact_WF[contact] = self._feet(p_BF)[contact]
+        self._normal.update(self._contact_WF)
+        return force_W, healthy
 
     def _begin(self, state: HardwareState, p_BF: np.ndarray) -> None:
         self._filter.start(state.acc_B, p_BF, self._foot_radius)
@@ -145,12 +159,22 @@ class Estimator(Component):
         f.R_WB = exp_rotation(np.array([0.0, 0.0, yaw])) @ f.R_WB
         return False
 
-    def _publish(self, state, p_BF, J_B, dq, contact, force_W, healthy, outbox: Outbox) -> None:
+    def _feet(self, p_BF: np.ndarray) -> np.ndarray:
+        """(4, 3) foot centres in the world [m]."""
+        return self._filter.p_WB + p_BF @ self._filter.R_WB.T
+
+    def _publish(
+        self,
+        state: HardwareState,
+        p_BF: np.ndarray,
+        J_B: np.ndarray,
+        force_W: np.ndarray,
+        healthy: bool,
+        outbox: Outbox,
+    ) -> None:
         f = self._filter
-        p_WF = f.p_WB + p_BF @ f.R_WB.T
-        self._contact_WF[contact] = p_WF[contact]
         rotating_B = p_BF @ skew(f.omega_B).T
-        v_WF = f.v_WB_W + (rotating_B + (J_B @ dq[..., None])[..., 0]) @ f.R_WB.T
+        v_WF = f.v_WB_W + (rotating_B + (J_B @ state.dq.reshape(4, 3, 1))[..., 0]) @ f.R_WB.T
         outbox.publish(
             "state/estimate",
             StateEstimate(
@@ -162,11 +186,11 @@ class Estimator(Component):
                 omega_WB_B=f.omega_B,
                 q=state.q,
                 dq=state.dq,
-                p_WF=p_WF,
+                p_WF=self._feet(p_BF),
                 v_WF=v_WF,
                 force_W=force_W,
-                contact=contact,
-                normal_W=self._normal.update(self._contact_WF),
+                contact=self._detector.contact,
+                normal_W=self._normal.normal_W,
                 covariance=f.P[:9, :9].copy(),
                 foot_std_m=np.sqrt(np.maximum(np.diagonal(f.P)[9:21], 0.0)).reshape(4, 3),
             ),

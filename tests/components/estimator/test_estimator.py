@@ -1,11 +1,14 @@
 """The estimator against a simulated robot that sways on its feet, and its parts against closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import ControlMode, HardwareState, JointCommand, LegStatus, MotionReference
+from surefoot.components.clock_messages import pack_snapshot
 from surefoot.components.component import Inbox, Outbox
 from surefoot.components.estimator.contact_detector import ContactDetector
 from surefoot.components.estimator.contact_force import ContactForce
@@ -29,6 +32,7 @@ from surefoot.config.robot import GRAVITY, load_robot
 ROBOT = load_robot("aliengo")
 LEGS = LegKinematics(ROBOT)
 STAND_Q = np.tile(ROBOT.nominal.stand_q, 4)
+NOTHING = np.zeros((4, 3))
 
 
 def test_rotations_agree_with_pinocchio():
@@ -144,6 +148,22 @@ def test_a_swaying_robot_knows_where_it_is(seed):
     assert np.sqrt(np.mean(np.square(velocity))) < 0.02
     assert np.sqrt(np.mean(np.square(force[500:]))) < 4.0
     assert estimate.covariance[0, 0] > 0.0
+
+
+def test_a_reading_that_comes_again_changes_nothing():
+    once, again, got, loop = Estimator(Deployment()), Estimator(Deployment()), {}, Loop()
+    for cycle in range(200):
+        loop.step(*sway(0.002 * cycle))
+        state = loop.got["hw/state"]
+        for name, estimator, times in (("once", once, 1), ("again", again, 1 + cycle % 4)):
+            inbox, outbox = Inbox(estimator.inputs), Outbox(estimator.outputs, got.__setitem__)
+            for late in range(times):
+                rounded = replace(state, t=state.t + 1e-15 * late)
+                inbox.deliver("hw/state", rounded)
+                estimator.step(state.t + 0.002 * late, inbox, outbox)
+                got[name, late] = encode(replace(got["state/estimate"], seq=0, t=state.t, force_W=NOTHING))
+        assert all(got["again", late] == got["once", 0] for late in range(1 + cycle % 4))
+    assert pack_snapshot(once.snapshot()) == pack_snapshot(again.snapshot())
 
 
 def drift_when_a_foot_seems_to_sink(status):
