@@ -49,6 +49,12 @@ class Check(Enum):
             "set the robot upright")
     IMU = ("IMU of which no figure changes", Answer.DAMP, "hw.gate.imu_stuck_cycles", Latch.AT_ONCE,
            "switch the robot off and on")
+    ENCODER = ("angle that stays the same to the last digit while its joint has to move", Answer.DAMP,
+               "hw.gate.encoder_stuck_cycles and hw.gate.encoder_moved", Latch.AT_ONCE,
+               "switch the robot off and on")
+    MOTOR = ("measured torque that is not what the laws ask for", Answer.DAMP,
+             "hw.gate.motor_torque_off, hw.gate.motor_torque_share and hw.gate.motor_off_cycles", Latch.AT_ONCE,
+             "does this motor still work?")
     POWER = ("power of all motors: 6 more cycles above the limit than below", Answer.DAMP, "hw.gate.power",
              Latch.AT_ONCE, "is a leg stuck?")
     HOT = ("temperature of a motor", Answer.DAMP, "hw.gate.temperature_max", Latch.AT_ONCE, "let it cool")

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from math import nan
+
 from surefoot.bus.messages import JointCommand
 from surefoot.config.hw import Hw
 from surefoot.config.robot import Robot
 from surefoot.hw.gate.check import Answer, Check, Latch, Violation
 from surefoot.hw.gate.command_watch import CommandWatch, damps_as_told, drives
+from surefoot.hw.gate.encoder_watch import EncoderWatch
 from surefoot.hw.gate.end_stops import EndStops
 from surefoot.hw.gate.imu_watch import ImuWatch
 from surefoot.hw.gate.limiter import Limiter
 from surefoot.hw.gate.limits import Limits
+from surefoot.hw.gate.motor_watch import MotorWatch
 from surefoot.hw.gate.power_watch import PowerWatch
 from surefoot.hw.gate.sensor_watch import SensorWatch
 from surefoot.hw.gate.tilt_watch import TiltWatch
@@ -43,10 +47,13 @@ class Gate:
         self._sensors = SensorWatch(limits, own)
         self._end_stops = EndStops(robot, limits, own)
         self._imu = ImuWatch(own.imu_stuck_cycles)
+        self._encoders = EncoderWatch(own)
+        self._motors = MotorWatch(robot, own)
         self._power = PowerWatch(own.power)
         self._tilt = TiltWatch(own.tilt_max, own.tilt_filter_s)
         self._limiter = Limiter(limits, own.torque_step)
         self._last = damping_law(settings.damping_kd)
+        self._measured_t = nan
         self._passed_t: float | None = None
         self._held_t: float | None = None
         self._latched: Violation | None = None
@@ -100,6 +107,7 @@ class Gate:
             self._passed_t = t
             self._last, limited = self._limiter.limited(command, self._last, sensors)
             found += limited
+        self._motors.sent(self._last)
         self.reason = self._words(found)
         return self._last
 
@@ -112,6 +120,8 @@ class Gate:
     ) -> list[Violation]:
         """What is broken, but for what the law is limited by; the gravest first."""
         driven = drives(self._last)
+        is_old = abs(t - age_s - self._measured_t) < _ROUNDING_S
+        self._measured_t = t - age_s
         unusable = self._sensors.unusable(sensors, age_s)
         unfit = self._commands.violation(command, t)
         found = [unusable, unfit]
@@ -124,10 +134,17 @@ class Gate:
                 self._end_stops.violation(sensors.q, driven),
                 self._sensors.speed(sensors),
             ]
+            if not is_old:
+                found += self._followed(sensors, driven and not self._settings.dry_run)
             if unfit is None and command is not None and not driven:
                 found.append(self._commands.first(command, sensors.q))
         broken = [violation for violation in found if violation is not None]
         return sorted(broken, key=lambda violation: _ORDER[violation.check])
+
+    def _followed(self, sensors: Sensors, driven: bool) -> list[Violation | None]:
+        """Whether joints do what they are told to, of a reading that has not been looked at before."""
+        encoders = self._encoders.violation(sensors.q, self._last, driven)
+        return [encoders, self._motors.violation(sensors, driven)]
 
     def _holds(self, barring: list[Violation], t: float) -> bool:
         """Whether the last law stays: nothing graver is broken, it drives, and it has not been held too long."""

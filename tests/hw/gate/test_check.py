@@ -64,6 +64,15 @@ ROWS = {
     Check.TILT: (tilted(OWN.tilt_max - 1e-9), tilted(OWN.tilt_max + 1e-9), "trunk tilts by 1.00 rad, limit 1.00"),
     Check.POWER: (working(500.0), working(up(500.0)), "power is 500 W, limit 500 W"),
     Check.IMU: ({"times": 50}, {"times": 51}, "accelerometer have not changed for 51 cycles, limit 50"),
+    Check.ENCODER: (
+        command(q=entry(STAND, CALF, -1.3)) | {"times": 25}, command(q=entry(STAND, CALF, -1.3)) | {"times": 26},
+        "measured q of RR_calf = -1.4545 has not changed for 26 cycles",
+    ),
+    Check.MOTOR: (
+        sensors(tau=entry(STILL.tau, CALF, -4.5)) | {"times": 25},
+        sensors(tau=entry(STILL.tau, CALF, -4.5)) | {"times": 26},
+        "motor of RR_calf makes -4.5 N m where 3.0 N m are asked of it, for 26 cycles, limit 25: does this motor",
+    ),
     Check.HOT: (hot(80.0), hot(up(80.0)), "motor of FL_thigh has 80 deg C, limit 80: let it cool"),
     Check.END_STOP: (
         sensors(q=entry(STAND, CALF, STOP)), sensors(q=entry(STAND, CALF, nextafter(STOP, -inf))),
@@ -126,10 +135,12 @@ ROWS = {
 
 
 def last_of(gate, cycle):
-    """The law of a cycle of the table, 0.11 s after one in which all was well."""
+    """The law of a cycle of the table, 0.11 s after one in which all was well; the last of several ends at `T`."""
     gate.law(cycle.get("before", at(0.39)), STILL, 0.39)
-    for _ in range(cycle.get("times", 1)):
-        law = gate.law(cycle.get("command", at(T)), cycle.get("sensors", STILL), T, cycle.get("age_s", 0.0))
+    command, times = cycle.get("command", at(T)), cycle.get("times", 1)
+    for before_s in 0.002 * np.arange(times)[::-1]:
+        dated = command and replace(command, t=command.t - before_s)
+        law = gate.law(dated, cycle.get("sensors", STILL), T - before_s, cycle.get("age_s", 0.0))
     return law
 
 
