@@ -55,12 +55,14 @@ class Motors:
         ordered(self, "ambient", "cooled", "a motor that has braked would never follow again")
 
 
-Kind = Literal["stuck encoder", "dead motor", "hot motor", "stuck imu", "stuck tick", "silent"]
+Kind = Literal[
+    "stuck encoder", "dead motor", "hot motor", "stuck imu", "stuck tick", "silent", "tipped over", "blow"
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Fault:
-    """Something that breaks, and perhaps comes right again."""
+    """Something that breaks, or is done to the robot, and perhaps comes right again."""
 
     kind: Kind
     joint: str = ""  # of an encoder or a motor

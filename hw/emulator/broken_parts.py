@@ -1,4 +1,4 @@
-"""What of the robot is broken, and when."""
+"""What of the robot is broken or done to it, and when."""
 
 from __future__ import annotations
 
@@ -8,6 +8,9 @@ import numpy as np
 
 from surefoot.config.emulator import Fault
 from surefoot.config.robot import JOINT_NAMES
+
+_PUSHES = {"tipped over": (0.0, 0.0, 0.0, 75.0, 0.0, 0.0), "blow": (0.0, 0.0, -1500.0, 0.0, 0.0, 0.0)}
+"""Force [N] and moment [N m] on the trunk, in the world: for 0.2 s and 0.04 s they are what their names say."""
 
 
 class BrokenParts:
@@ -24,6 +27,10 @@ class BrokenParts:
         """(12,) bool: the joints that it is of."""
         broken = {fault.joint for fault in self._of(kind, t)}
         return np.array([name in broken for name in JOINT_NAMES])
+
+    def push(self, t: float) -> np.ndarray:
+        """(6,) force [N] and moment [N m] on the trunk, in the world."""
+        return sum((np.array(push) for kind, push in _PUSHES.items() if self._of(kind, t)), np.zeros(6))
 
     def _of(self, kind: str, t: float) -> list[Fault]:
         return [fault for fault in self._faults if fault.kind == kind and fault.begin_s <= t < fault.end_s]

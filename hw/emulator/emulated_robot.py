@@ -91,6 +91,7 @@ class EmulatedRobot:
         Raises:
             HardwareFault: the physics diverged.
         """
+        self.plant.push(self._broken.push(self.t))
         for step in range(STEPS_PER_CYCLE):
             t = self.t + step * PHYSICS_DT
             arrive(t)

@@ -55,7 +55,7 @@ class Witness:
         if self.stood_t is None or self.fell:
             return
         self.crossed = self.crossed or bool((truth.p_WF[:, 0] > self._end_x).all())
-        self.tilt = max(self.tilt, _tilt(truth.quat_WB))
+        self.tilt = max(self.tilt, tilt_of(truth.quat_WB))
         if self.tilt > _FALL_TILT:
             self.fell = f"tilted by {self.tilt:.2f} rad at {t:.3f} s"
         elif self._up and any(part in truth.body_contact for part in _BODY):
@@ -71,6 +71,7 @@ class Witness:
         return f"the robot stood at {self.stood_t:.1f} s and went {self.forward_m:.2f} m forward{far}: {end}"
 
 
-def _tilt(quat_WB: np.ndarray) -> float:
+def tilt_of(quat_WB: np.ndarray) -> float:
+    """Of a trunk (w, x, y, z) from the vertical [rad]."""
     _, x, y, _ = quat_WB.tolist()
     return acos(min(max(1.0 - 2.0 * (x * x + y * y), -1.0), 1.0))

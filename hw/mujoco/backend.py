@@ -113,6 +113,10 @@ class MujocoRobot:
             mujoco.mj_step1(self.model, self.data)
             self._step += 1
 
+    def push(self, wrench_W: np.ndarray) -> None:
+        """From outside onto the trunk until the next call: (6,) force [N] and moment [N m] in the world."""
+        self.data.xfrc_applied[self._trunk_body] = wrench_W
+
     def close(self) -> None:
         self._laws.clear()
         self._law = self._damp

@@ -34,7 +34,8 @@ class RobotResult:
     Attributes:
         fault, phase: what was done when.
         good: as it is declared; true where nothing is.
-        damped_after: cycles from its begin until no motor was driven any more; None if one still is.
+        damped_after: cycles from its begin, or from when it counts, until no motor was driven any more; None if
+            one still is.
         outcome: of the robot, in words.
         told: what was said of it first.
     """
@@ -67,16 +68,16 @@ class RobotDrill:
             ear = _Ear(begin)
             stack.listen(ear)
             stack.command(PHASES[phase])
-            ended = False
+            counts, ended = _Counts(fault, stack, begin), False
             try:
-                stack.run(begin + AFTER_S)
+                stack.run(begin + AFTER_S, counts)
             except HardwareFault as error:
                 ended = True
                 ear.told = ear.told or f"io: {error}"
                 self._let_go(stack)
             witness = stack.robot.witness
             since = witness.damped_t
-            damped_after = None if since is None else max(round((since - begin) * CYCLE_HZ), 0)
+            damped_after = None if since is None else max(round((since - counts.t) * CYCLE_HZ), 0)
             outcome = witness.fell or "upright"
         return RobotResult(
             fault, phase, self._good(fault, ended, damped_after, witness.fell), damped_after, outcome, ear.told
@@ -87,8 +88,10 @@ class RobotDrill:
             return damped_after is None and not fell
         if fault.declared is Declared.UNHEARD:
             return ended
+        if fault.declared in (Declared.DAMPED_MOTOR, Declared.DAMPED_ENCODER):
+            return not fell and (damped_after is not None or fault.declared is Declared.DAMPED_ENCODER)
         limit = self.limit_cycles(fault)
-        return limit is None or (damped_after is not None and damped_after <= limit)
+        return limit is not None and damped_after is not None and damped_after <= limit
 
     @staticmethod
     def _let_go(stack: EmulatedStack) -> None:
@@ -106,6 +109,21 @@ class RobotDrill:
                 stack.run(_LIMIT_S, lambda: ear.swings)
                 self._begin[phase] = stack.t + _INTO_S
         return self._begin[phase]
+
+
+class _Counts:
+    """Notes from when on a fault counts; looked at between two instants."""
+
+    def __init__(self, fault: RobotFault, stack: EmulatedStack, begin: float):
+        self.t = begin
+        self._fault, self._stack, self._seen = fault, stack, False
+
+    def __call__(self) -> bool:
+        robot, gate = self._stack.robot, self._stack.io.deployment.hw.gate
+        if not self._seen and robot.t >= self.t:
+            self._seen = self._fault.counts(robot.plant.truth(), gate)
+            self.t = robot.t
+        return False
 
 
 class _Ear:

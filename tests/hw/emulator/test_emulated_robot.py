@@ -131,6 +131,24 @@ def test_a_dead_motor_lets_its_leg_sink():
     assert np.argmax(np.abs(machine.plant.truth().q - HOLD.q)) // 3 == 3
 
 
+def test_who_tips_it_over_lays_it_on_its_side():
+    machine = robot(faults=(Fault("tipped over", begin_s=0.02, end_s=0.22),))
+    machine.take(packet())
+    for _ in range(350):
+        machine.advance()
+    assert "tilted by 0.79 rad" in machine.witness.fell
+
+
+def test_a_blow_presses_it_down_and_its_motors_turn_over_the_power():
+    machine = robot(faults=(Fault("blow", begin_s=0.02, end_s=0.06),))
+    machine.take(packet())
+    power = []
+    for _ in range(60):
+        machine.advance()
+        power.append(machine.plant.truth().power_w)
+    assert max(power[:10]) < 10.0 < 500.0 < sorted(power)[-7] and machine.witness.tilt < 0.1
+
+
 def test_angles_beyond_every_robots_are_no_command():
     machine = robot()
     assert not machine.take(encode_command(replace(HOLD, q=np.full(12, 8.0)), G1, ANY_ANGLE)[0])
