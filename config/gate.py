@@ -41,13 +41,13 @@ class Gate:
     tilt_filter_s: Annotated[float, Within(0.05, 10.0)] = 0.5
     # Without a change of any figure of the IMU (2): 0.1 s; noise alone moves them.
     imu_stuck_cycles: Annotated[int, Within(5, 5000)] = 50
-    # Without a change of a joint's angle (1), while its law or its leg moves by more than `encoder_moved`: 0.05 s.
+    # Without a change of a joint's angle (0), while its law or its leg moves by more than `encoder_moved`: 0.05 s.
     encoder_stuck_cycles: Annotated[int, Within(5, 5000)] = 25
     encoder_moved: Annotated[float, Within(0.005, 1.0)] = 0.05  # [rad]
-    # A motor may be off what is asked of it by a figure [N m] and a share, and by more for so many cycles.
+    # A motor may be off what is asked of it by a figure [N m] and a share (2.4 in all, half of it for 1 cycle).
     motor_torque_off: Annotated[float, Within(1.0, 100.0)] = 4.0
     motor_torque_share: Annotated[float, Within(0.0, 1.0)] = 0.3
-    motor_off_cycles: Annotated[int, Within(5, 5000)] = 25
+    motor_off_cycles: Annotated[int, Within(5, 5000)] = 25  # by more for so long (0): 0.05 s
     # By the angle error of the first law after damping [N m] (1.3); 0.12 rad at the posture's gain.
     first_torque: Annotated[float, Within(0.5, 500.0)] = 30.0
     # Older measurements hold the last law [s]; the link's own limit, a fault, is 0.05.

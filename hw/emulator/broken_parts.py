@@ -9,8 +9,8 @@ import numpy as np
 from surefoot.config.emulator import Fault
 from surefoot.config.robot import JOINT_NAMES
 
-_PUSHES = {"tipped over": (0.0, 0.0, 0.0, 75.0, 0.0, 0.0), "blow": (0.0, 0.0, -1500.0, 0.0, 0.0, 0.0)}
-"""Force [N] and moment [N m] on the trunk, in the world: for 0.2 s and 0.04 s they are what their names say."""
+_PUSHES = {"tipped over": (0.0, 0.0, 0.0, 45.0, 0.0, 0.0), "blow": (0.0, 0.0, -1500.0, 0.0, 0.0, 0.0)}
+"""Force [N] and moment [N m] on the trunk, in the world: in 0.6 s and 0.04 s they do what they are called."""
 
 
 class BrokenParts:

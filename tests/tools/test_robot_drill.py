@@ -13,13 +13,15 @@ CONFIG = Path(deployment_module.__file__).parent / "planks_emulated.toml"
 BY_NAME = {fault.name: fault for fault in FAULTS}
 
 
-@pytest.mark.parametrize("name", ["every state lost", "hot motor", "both ways lost for 30 ms"])
+@pytest.mark.parametrize("name", ["every state lost", "hot motor", "both ways lost for 30 ms", "dead motor"])
 def test_a_robot_that_stands_ends_as_declared(name):
     drill = RobotDrill(CONFIG)
     result = drill.carry_out(BY_NAME[name], "standing")
     assert result.good and result.outcome == "upright", result
     if name == "hot motor":
         assert 3 < result.damped_after <= drill.limit_cycles(result.fault) == 7 and "91 deg C" in result.told
+    if name == "dead motor":
+        assert result.damped_after > 25 and result.told.startswith("gate: stopped (motor of RL_calf makes")
     if name == "every state lost":
         assert 25 < result.damped_after <= drill.limit_cycles(result.fault) == 32 and result.told != ""
 

@@ -97,7 +97,7 @@ FAULTS = (
     RobotFault("stuck encoder", part("stuck encoder", "RL_calf"), Declared.DAMPED_ENCODER),
     RobotFault("stuck IMU", part("stuck imu"), Declared.DAMPED_STUCK),
     RobotFault(
-        "tipped over", part("tipped over", seconds=0.2), Declared.DAMPED_TILT,
+        "tipped over", part("tipped over", seconds=0.6), Declared.DAMPED_TILT,
         lambda truth, gate: tilt_of(truth.quat_WB) > gate.tilt_max,
     ),
     RobotFault(

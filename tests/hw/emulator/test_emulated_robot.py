@@ -132,7 +132,7 @@ def test_a_dead_motor_lets_its_leg_sink():
 
 
 def test_who_tips_it_over_lays_it_on_its_side():
-    machine = robot(faults=(Fault("tipped over", begin_s=0.02, end_s=0.22),))
+    machine = robot(faults=(Fault("tipped over", begin_s=0.02, end_s=0.62),))
     machine.take(packet())
     for _ in range(350):
         machine.advance()
