@@ -41,7 +41,7 @@ class Gate:
     tilt_filter_s: Annotated[float, Within(0.05, 10.0)] = 0.5
     # Without a change of any figure of the IMU (2): 0.1 s; noise alone moves them.
     imu_stuck_cycles: Annotated[int, Within(5, 5000)] = 50
-    # Without a change of a joint's angle (0), while its law or its leg moves by more than `encoder_moved`: 0.05 s.
+    # Without a change of a joint's angle (1), while its law or its leg moves by more than `encoder_moved`: 0.05 s.
     encoder_stuck_cycles: Annotated[int, Within(5, 5000)] = 25
     encoder_moved: Annotated[float, Within(0.005, 1.0)] = 0.05  # [rad]
     # A motor may be off what is asked of it by a figure [N m] and a share (2.4 in all, half of it for 1 cycle).

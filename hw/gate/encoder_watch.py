@@ -30,9 +30,10 @@ class EncoderWatch:
 
     def violation(self, q: np.ndarray, law: MotorLaw, driven: bool) -> Violation | None:
         """Look at a new reading of the angles (12,) [rad], under a law; of a robot that is driven, or not."""
-        changed = (q != self._q) if driven else np.ones(12, bool)
+        changed = (q != self._q) | (not driven)
         self._q = q
-        self._unchanged = np.where(changed, 0, self._unchanged + 1)
+        self._unchanged += 1
+        self._unchanged[changed] = 0
         begins = changed | ~self._pulled
         self._pulled = law.kp > 0.0
         self._reference_then[begins] = law.q[begins]

@@ -40,8 +40,9 @@ class MotorWatch:
         if not driven:
             self._over[:] = 0
             return None
-        asked = np.clip(self._constant - self._kp * sensors.q - self._kd * sensors.dq, -self._limit, self._limit)
-        nearest = np.clip(sensors.tau, asked.min(axis=0), asked.max(axis=0))
+        asked = self._constant - self._kp * sensors.q - self._kd * sensors.dq
+        nearest = np.minimum(np.maximum(sensors.tau, asked.min(axis=0)), asked.max(axis=0))
+        nearest = np.minimum(np.maximum(nearest, -self._limit), self._limit)
         off = np.abs(sensors.tau - nearest) > self._off + self._share * np.abs(nearest)
         self._over = np.where(off, self._over + 1, 0)
         joint = int(np.argmax(self._over))
