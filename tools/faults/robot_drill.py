@@ -75,6 +75,8 @@ class RobotDrill:
                 ended = True
                 ear.told = ear.told or f"io: {error}"
                 self._let_go(stack)
+                while stack.robot.t < begin + AFTER_S:  # nobody speaks to it any more
+                    stack.robot.advance()
             witness = stack.robot.witness
             since = witness.damped_t
             damped_after = None if since is None else max(round((since - counts.t) * CYCLE_HZ), 0)

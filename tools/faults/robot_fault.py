@@ -76,6 +76,15 @@ def link(commands: dict[str, float], states: dict[str, float], seconds: float = 
     )
 
 
+def braking(broken: Broken) -> Broken:
+    """The same, of a robot whose motors brake when no command comes; else they go on with the last."""
+
+    def with_brakes(emulator: Emulator, t: float) -> Emulator:
+        return replace(broken(emulator, t), motors=replace(emulator.motors, on_silence="brake"))
+
+    return with_brakes
+
+
 _POWER_CYCLES = 6
 """Above the limit, as the vendor counts."""
 
@@ -88,6 +97,7 @@ FAULTS = (
     RobotFault("stuck tick", part("stuck tick"), Declared.DAMPED_LATE),
     RobotFault("every state lost", link(_NOTHING, {"loss": 1.0}), Declared.DAMPED_LATE),
     RobotFault("every command lost", link({"loss": 1.0}, _NOTHING), Declared.UNHEARD),
+    RobotFault("every command lost, and it brakes", braking(link({"loss": 1.0}, _NOTHING)), Declared.UNHEARD),
     RobotFault("both ways lost for 30 ms", link({"loss": 1.0}, {"loss": 1.0}, 0.030), Declared.GOES_ON),
     RobotFault("nine of ten damaged for 30 ms", link(_DAMAGE, _DAMAGE, 0.030), Declared.GOES_ON),
     RobotFault("every packet twice", link(_TWICE, _TWICE), Declared.GOES_ON),
