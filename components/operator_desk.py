@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 
 from surefoot.bus.codec import encode
 from surefoot.bus.messages import OperatorCommand
 from surefoot.bus.recording.journal import Journal
-from surefoot.bus.service_keys import BEAT, LOG
+from surefoot.bus.service_keys import BEAT, LOG, REFUSED
 from surefoot.bus.session import Session
 from surefoot.components import clock_messages as clock
 from surefoot.components.heartbeat import Heartbeat
@@ -18,8 +19,19 @@ from surefoot.config.operator import Operator
 _TOPIC = "operator/command"
 _NAME = "operator"
 _LONGEST = 64  # characters of a command
-_ALONE = ("sit", "stop", "damp", "cut")
+_ALONE = ("sit", "stop", "halt", "pause", "damp", "cut")
 """What may be asked of a robot whose operator's heartbeat is missing: nothing that makes it move on."""
+
+
+def pack_refusal(request: str, why: str) -> bytes:
+    """What is told of a request that was not passed on."""
+    return json.dumps([request, why]).encode()
+
+
+def unpack_refusal(payload: bytes) -> tuple[str, str]:
+    """The request, and why it was not passed on."""
+    request, why = json.loads(payload)
+    return request, why
 
 
 class OperatorDesk:
@@ -80,9 +92,9 @@ class OperatorDesk:
             if len(command) > _LONGEST or not command.isprintable() or "\ufffd" in command:
                 self._refuse(f"{clock.REQUEST}: {asked[:_LONGEST]!r:.80} is no command")
             elif command.partition(": ")[0] not in _ALONE and (missing := self._heartbeat.missing):
-                self._refuse(
-                    f"{clock.REQUEST}: {command}: {missing}; start surefoot heartbeat, then command again"
-                )
+                why = f"{command}: {missing}; start surefoot heartbeat, then command again"
+                self._refuse(f"{clock.REQUEST}: {why}")
+                self._session.put(REFUSED, pack_refusal(command, why), self._lossless)
             else:
                 yield command
 

@@ -12,8 +12,8 @@ import pinocchio as pin
 
 from surefoot.bus.messages import FsmEvent, HardwareState, MotionReference, ProcessStatus, StateEstimate
 from surefoot.bus.topics import PROCESSES
-from surefoot.components.fsm.fsm import DIRECTIONS
 from surefoot.components.fsm.support_triangle import SupportTriangle
+from surefoot.components.fsm.words import is_direction
 from surefoot.components.robot_model import build_model
 from surefoot.config.robot import Robot
 from surefoot.tools.supervisor_messages import Notice
@@ -123,7 +123,7 @@ class Picture:
     def note_command(self, command: str) -> None:
         """Take in what the robot was told."""
         self.command = command
-        if command in DIRECTIONS:
+        if is_direction(command):
             self.direction = command
 
     def note_status(self, status: ProcessStatus) -> None:
