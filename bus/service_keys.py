@@ -19,6 +19,9 @@ LOG = "log"
 REQUEST = "operator/request"
 """People's commands to the process of io, which dates and numbers them."""
 
+TUNE = "operator/tune"
+"""People's changes of settings to the process of io, which checks, dates and numbers them: `section.key=value`."""
+
 REFUSED = "operator/refused"
 """Requests that have not become commands, with the reason. No topic: nothing of the run follows from them."""
 

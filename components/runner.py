@@ -12,7 +12,7 @@ from surefoot.bus.topics import nominal_hz, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
 from surefoot.components.deployment_desk import check_settings, serve_deployment
-from surefoot.components.operator_desk import OperatorDesk
+from surefoot.components.operator_desk import TUNING, OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.real_time import claim
 from surefoot.components.registry import component_class
@@ -75,6 +75,8 @@ class Runner:
         try:
             if self._relieves:
                 self._take_over()
+            elif self._monotonic and not self.hub:
+                self._stepper.hear_again(TUNING)
             self._follow()
         finally:
             self._stepper.close()
@@ -248,7 +250,7 @@ class HubRunner(Runner):
     def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0):
         super().__init__(deployment, name, boot, parent)
         drop = self._stepper.buffers.drop
-        self._desk = OperatorDesk(self._session, drop, deployment.operator, lossless=False)
+        self._desk = OperatorDesk(self._session, drop, deployment, lossless=False)
         serve_time(self._session, deployment)
         serve_deployment(self._session, deployment)
 

@@ -77,6 +77,7 @@ class Picture:
         displacement_m: the largest of a foot on the ground.
         command: what was commanded last; empty before.
         direction: of the walk that was commanded last; empty before.
+        tuned: settings that a person has changed in this run, `section.key=value`.
         notes: what the supervisor did, in words.
         ending: in words why the run ends; empty while it goes on.
         simulated: time is known to wait for every process.
@@ -92,6 +93,7 @@ class Picture:
     displacement_m: float = 0.0
     command: str = ""
     direction: str = ""
+    tuned: tuple[str, ...] = ()
     notes: list[str] = field(default_factory=list)
     ending: str = ""
     simulated: bool = False

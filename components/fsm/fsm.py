@@ -34,7 +34,13 @@ class Fsm(Component):
     """
 
     name: ClassVar[str] = "fsm"
-    inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "operator/command", "trajopt/plan", "foothold/regions")
+    inputs: ClassVar[tuple[str, ...]] = (
+        "state/estimate",
+        "operator/command",
+        "operator/tuning",
+        "trajopt/plan",
+        "foothold/regions",
+    )
     outputs: ClassVar[tuple[str, ...]] = (
         "fsm/reference",
         "fsm/event",
@@ -57,12 +63,10 @@ class Fsm(Component):
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
         robot = deployment.load_robot()
-        self._settings = deployment.fsm
         self._stand_q = np.tile(robot.nominal.stand_q, 4)
         self._lie_q = np.tile(robot.nominal.lie_q, 4)
         self._model = build_model(robot)
         self._data = self._model.createData()
-        self._cycle = ProbingCycle(robot, deployment.fsm, self._report)
         self._posture: Posture | None = Posture.DAMP
         self._reason = "waiting for a command"
         self._joint_from = self._joint_to = self._stand_q
@@ -71,10 +75,15 @@ class Fsm(Component):
         self._events: list[FsmEvent] = []
         self._t = 0.0
 
+    def set_up(self) -> None:
+        self._settings = self.deployment.fsm
+        self._cycle = ProbingCycle(self.deployment.load_robot(), self._settings, self._report)
+
     def activate(self, t: float, inbox: Inbox) -> bool:
         return True
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        self.heed_tuning(inbox)
         self._t = t
         estimate = inbox.fresh("state/estimate", t)
         now = self._observe(t, estimate) if estimate is not None else None

@@ -111,7 +111,7 @@ def _press_again(cycle: ProbingCycle, now: Observation) -> Answer:
         return taken("the leg that found no foothold tries its candidates once more")
     if cycle.state != State.PROBE:
         return refused(
-            f"reprobe: no foot presses in {cycle.state}; say it in {State.PROBE}, or where a leg has found no foothold"
+            f"reprobe: no foot presses in {cycle.state}; say it in PROBE, or after a leg has found no foothold"
         )
     if cycle.press_ends:
         return refused(f"reprobe: the press ends already: {cycle.press_ends}")
