@@ -138,8 +138,8 @@ class Component:
     def __init__(self, deployment: Deployment):
         self.deployment = deployment
         self.said: list[str] = []
-        self._begun = deployment
-        self._tuning: Tuning | None = None
+        self._original = deployment
+        self._heeded: Tuning | None = None
         self.set_up()
 
     def set_up(self) -> None:
@@ -152,11 +152,11 @@ class Component:
         all that was changed: a component that was restarted, or is replayed from the middle, needs no other.
         """
         message = inbox.latest("operator/tuning")
-        if message is None or message is self._tuning:
+        if message is None or message is self._heeded:
             return
-        self._tuning = message
+        self._heeded = message
         try:
-            deployment = tuned(self._begun, message.assignment)
+            deployment = tuned(self._original, message.assignment)
         except ConfigError as error:  # io runs with other code
             self.untuned = f"goes on as it was: {error}"
             return

@@ -102,8 +102,14 @@ class Fsm(Component):
 
     def _answer(self, message: OperatorCommand, now: Observation | None) -> OperatorAnswer:
         answer = self._obey(message.command, now)
-        about = {"command": message.command, "number": message.seq}
-        return OperatorAnswer(t=self._t, valid=True, taken=answer.taken, words=answer.words, **about)
+        return OperatorAnswer(
+            t=self._t,
+            valid=True,
+            command=message.command,
+            number=message.seq,
+            taken=answer.taken,
+            words=answer.words,
+        )
 
     def _obey(self, asked: str, now: Observation | None) -> Answer:
         """Do what is asked; what cannot be done is an event too."""

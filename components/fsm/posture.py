@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +20,7 @@ class Posture(StrEnum):
     SIT_DOWN = "SIT_DOWN"
 
 
-def posture_reference(t: float, posture: Posture, reason: str, **joints: np.ndarray | float) -> MotionReference:
+def posture_reference(t: float, posture: Posture, reason: str, **joints: Any) -> MotionReference:
     """The reference at time `t` [s] of a robot that does not balance; `joints` are its `joint_...` fields."""
     return MotionReference(
         t=t,

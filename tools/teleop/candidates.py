@@ -75,7 +75,7 @@ class Candidates:
         """Take in an event."""
         if event.kind == "transition":
             self._follow(event)
-        elif self.turn is not None and event.leg == self.turn.leg:
+        elif self.turn is not None and not self.turn.end and event.leg == self.turn.leg:
             _judge(self.turn.candidate(event.candidate), event)
 
     def _follow(self, event: FsmEvent) -> None:

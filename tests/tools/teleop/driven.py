@@ -18,6 +18,7 @@ from surefoot.config.fsm import Fsm as Settings
 from surefoot.config.operator import Operator
 
 _numbers = count()
+PATIENCE_S = 180.0  # of wall time: other jobs share the cores, and no test is decided by it
 
 
 class DrivenPuppet(Walker):
@@ -57,7 +58,7 @@ class Driven:
         self.robot = DrivenPuppet(self._session, deployment.fsm)
         for key in ("operator/command", "operator/tuning"):
             self._session.subscribe(key, self._on_message)
-        self._asked, self._ended = [], Event()
+        self._asked, self._ended, self._hold_in = [], Event(), "nowhere"
         self._thread = Thread(target=self._run, daemon=True)
         self._thread.start()
 
@@ -65,8 +66,18 @@ class Driven:
         """The bus, from another session."""
         return Session(self.namespace, connect_ms=2000)
 
-    def wait(self, true, seconds=20.0):
-        end = time.monotonic() + seconds
+    def hold_in(self, state):
+        """As soon as the robot comes to a state time stands, but for a tick to answer a command, until `go_on`."""
+        self._hold_in = state
+
+    def wait_held(self):
+        self.wait(lambda: self.robot.state == self._hold_in)
+
+    def go_on(self):
+        self._hold_in = "nowhere"
+
+    def wait(self, true):
+        end = time.monotonic() + PATIENCE_S
         while not true():
             assert time.monotonic() < end, f"{self.robot.state}: {self.robot.said[-3:]}"
             time.sleep(0.01)
@@ -85,11 +96,13 @@ class Driven:
     def _run(self):
         while not self._ended.is_set():
             self._desk.publish(self.robot.t)
+            told = bool(self._asked)
             while self._asked:
                 key, payload = self._asked.pop(0)
                 message = decode(TOPICS[key].message, payload)
                 if key == "operator/command":
                     self.commands.append(message.command)
                 self.robot.inbox.deliver(key, message)
-            self.robot.tick()
+            if told or self.robot.state != self._hold_in:
+                self.robot.tick()
             time.sleep(0.001)

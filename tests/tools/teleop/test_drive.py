@@ -11,10 +11,9 @@ import termios
 import time
 
 import pytest
-from driven import Driven
+from driven import PATIENCE_S, Driven
 
 CLI = [sys.executable, "-P", "-m", "surefoot.tools.cli"]
-PATIENCE_S = 60.0
 
 
 class Terminal:
@@ -89,25 +88,29 @@ def drive():
 
 def test_keys_are_commands_and_the_screen_shows_what_comes_of_them(drive):
     stack, terminal = drive(probe_around=False, alternatives=1, put_off=False)
+    stack.hold_in("PROBE")
     terminal.type("\x1b[A")
     terminal.shows("forward: the robot sets off")
-    stack.come_to("PROBE")
+    stack.wait_held()
     terminal.shows("leg RL, planned foothold")
-    stack.robot.sunk[2] = 0.04
+    stack.robot.sunk[2], stack.robot.unanswered = 0.04, ("plan",)
+    stack.go_on()
     terminal.shows("alternative 1 of 1")
-    stack.come_to("MOVE")
     terminal.type("k")
     terminal.shows("RL has given up: no safe foothold among the alternatives")
     terminal.shows("collapsed: the foot moved 4.0 cm")
     terminal.shows("given up: skipped by command")
+    stack.robot.unanswered = ()
     stack.come_to("STOPPED")
     terminal.type("n")
     terminal.shows("refused  step: the walk is over")
+    stack.hold_in("DETECT_CONTACT")
     terminal.type("d")
     terminal.shows("right: the robot sets off")
-    stack.come_to("DETECT_CONTACT")
+    stack.wait_held()
     terminal.type("p")
-    stack.come_to("STOPPED")
+    terminal.shows("pause: after the step of")
+    stack.go_on()
     terminal.shows("STOPPED  commanded pause")
     terminal.type("p")
     terminal.shows("resume: the walk goes on")
@@ -130,13 +133,13 @@ def test_a_cut_is_asked_for_twice(drive):
 
 
 def test_with_a_heartbeat_the_robot_whose_driver_leaves_sits_down(drive):
-    stack, terminal = drive(heartbeat_s=1.0)
+    stack, terminal = drive(heartbeat_s=4.0)
     terminal.type("w")
     stack.come_to("MOVE")
     terminal.type("q")
     terminal.ends(0)
     stack.come_to("DAMP")
-    assert stack.commands == ["forward", "sit: no heartbeat for 1 s"]
+    assert stack.commands == ["forward", "sit: no heartbeat for 4 s"]
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGINT, 0)])

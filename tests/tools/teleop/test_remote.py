@@ -42,21 +42,26 @@ def remote_of():
 def test_a_walk_from_the_first_direction_to_the_end(driven, remote_of):
     stack = driven(probe_around=False)
     remote = remote_of(stack)
+    stack.hold_in("DETECT_CONTACT")
     assert remote.direction(1.0, 0.0).taken
-    stack.come_to("DETECT_CONTACT")
+    stack.wait_held()
     for say, words in (
         (remote.pause, "after the step of RL; resume goes on"),
         (remote.resume, "the pause is taken back: the walk goes on after this step"),
         (remote.pause, "after the step of RL; resume goes on"),
     ):
         assert say().words == words
+    stack.go_on()
     stack.come_to("STOPPED")
+    stack.hold_in("PROBE")
     assert remote.step_once().words == "one step, then a pause again"
-    stack.come_to("PROBE")
+    stack.wait_held()
     assert remote.reprobe().words == "FL presses again from the first force"
     assert remote.skip_foothold().taken
-    stack.come_to("LEG_UP")
+    stack.hold_in("LEG_UP")
+    stack.wait_held()
     assert remote.stop().taken
+    stack.go_on()
     stack.come_to("STOPPED")
     assert remote.sit().taken
     stack.come_to("DAMP")
@@ -79,13 +84,13 @@ def test_what_the_desk_does_not_pass_on_is_answered_too(driven, remote_of):
 
 
 def test_a_robot_whose_remote_is_closed_sits_down(driven, remote_of):
-    stack = driven(heartbeat_s=0.6)
+    stack = driven(heartbeat_s=4.0)
     remote = remote_of(stack)
     assert remote.direction(1.0, 0.0).taken
     stack.come_to("MOVE")
     remote.close()
     stack.come_to("DAMP")
-    assert "sit: no heartbeat for 0.6 s" in stack.commands
+    assert "sit: no heartbeat for 4 s" in stack.commands
 
 
 def test_no_answer_keeps_another_command(driven, remote_of):

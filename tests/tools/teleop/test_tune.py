@@ -46,7 +46,7 @@ def test_a_change_is_told_and_acts(stack, tune):
 def test_what_is_out_of_bounds_is_refused_with_the_words_of_the_configuration(stack, tune, key, value, why):
     code, told = tune(key, value)
     assert code == 1 and why in told
-    assert stack.robot.fsm.deployment == stack.robot.fsm._begun
+    assert stack.robot.fsm.deployment == stack.robot.fsm._original
 
 
 def test_what_was_changed_is_listed_and_shown_in_the_status(stack, tune):
