@@ -17,7 +17,7 @@ from surefoot.tools.status_screen import machine
 from surefoot.tools.teleop.candidates import Candidate, Candidates, Turn
 from surefoot.tools.teleop.keys import KEYS, LEAVE, SURE
 
-_ANSWERS = 4
+_ANSWERS = 3
 
 Said = tuple[str, Answer | None]
 """A command, and what came back; None while nothing has."""
@@ -80,8 +80,7 @@ def _verdict(candidate: Candidate, turn: Turn) -> Text:
 
 def _answers(said: Sequence[Said]) -> Panel:
     lines = [_line(words, answer) for words, answer in said[-_ANSWERS:]]
-    text = Text("\n", overflow="ellipsis", no_wrap=True).join(lines) if lines else Text("-")
-    return Panel(text, title="answered", title_align="left")
+    return Panel(Text("\n").join(lines) if lines else Text("-"), title="answered", title_align="left")
 
 
 def _line(words: str, answer: Answer | None) -> Text:
