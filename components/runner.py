@@ -21,6 +21,7 @@ from surefoot.components.run_clock import AnotherRun, run_clock, serve_time
 from surefoot.components.scheduler import NS
 from surefoot.components.stepper import Stepper
 from surefoot.config.deployment import Deployment
+from surefoot.config.tuning import tunable_settings
 
 _LOOK_S = 0.2
 _LET_GO_S = 1.0  # shorter than the supervisor's patience
@@ -65,6 +66,7 @@ class Runner:
         if not self._deployment.network.at_hub:
             check_settings(self._session, self._deployment, self._name, lambda: self._end.due)
         self._stepper.component.warm_up()
+        tunable_settings()  # read now: the first change costs no more than any other
         gc.collect()
         gc.freeze()
         self._stepper.connect()  # a process that is busy with itself would hold up the bus
