@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from surefoot.bus.codec import decode, encode
-from surefoot.bus.messages import FsmEvent, OperatorCommand, StateEstimate
+from surefoot.bus.messages import FsmEvent, OperatorCommand, StateEstimate, Tuning
 from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components import clock_messages as clock
 from surefoot.components.elevation_map.elevation_map import ElevationMap
@@ -160,3 +160,13 @@ def test_a_map_is_as_before_after_a_rehearsal():
     assert pack(second) == blank != pack(first)
     assert second.take_over(first.place(), 100.0) == 0.0  # a map does not age
     assert pack(second) == pack(first)
+
+
+def test_one_that_begins_anew_hears_what_was_changed_before_it_listened():
+    changed = [Tuning(valid=True, seq=seq, assignment=(f"fsm.swing_s=0.{6 + seq}",)) for seq in (0, 1)]
+    stepper, session = live()
+    session.ask = lambda key: [encode(each) for each in changed] if key == "kept/operator/tuning" else []
+    stepper.hear_again("operator/tuning")
+    step(stepper, 0.1)
+    assert stepper.component.deployment.fsm.swing_s == 0.7 and not stepper.buffers.bad
+    stepper.hear_again("hw/depth")  # no input of its own
