@@ -31,7 +31,8 @@ def spoken_over_network(network: Network) -> list[str]:
     relief = service_keys.RELIEF_ASK, service_keys.RELIEF_ANSWER
     prefixes = service_keys.DONE, service_keys.HELLO, service_keys.LOG, *relief
     services = [f"{prefix}/{name}" for name in away for prefix in prefixes]
-    return [*topics, *services, service_keys.REQUEST, service_keys.BEAT, service_keys.SUPERVISOR_REQUEST]
+    asked = service_keys.REQUEST, service_keys.TUNE, service_keys.BEAT, service_keys.SUPERVISOR_REQUEST
+    return [*topics, *services, *asked]
 
 
 def answered_over_network(network: Network) -> list[str]:

@@ -333,8 +333,8 @@ class OperatorCommand(Message):
     """`operator/command`: what a person asks for, or what is done because nobody is there to ask."""
 
     command: str = text(
-        "hold, stand, sit, forward, backward, left, right, stop, damp or cut; what a person did not type has its "
-        "reason after a colon"
+        "a word such as stand, pause or forward, or `direction X Y`; what a person did not type has its reason "
+        "after a colon"
     )
 
     @property
@@ -346,6 +346,23 @@ class OperatorCommand(Message):
     def why(self) -> str:
         """The reason; empty where a person has typed it."""
         return self.command.partition(": ")[2]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class OperatorAnswer(Message):
+    """`operator/answer`: what becomes of a command, in the state machine's words."""
+
+    command: str = text("as it was asked")
+    number: int = integer("`seq` of that `operator/command`", default=-1)
+    taken: bool = flag("it is obeyed, now or when the step is over; false: refused")
+    words: str = text("what the robot does; or why it does not, and what would help")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Tuning(Message):
+    """`operator/tuning`: every setting that was changed since the run began; who has this one needs no earlier."""
+
+    assignment: tuple[str, ...] = names("section.key=value, as --set takes them; the latest change last")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

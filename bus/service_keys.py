@@ -19,6 +19,12 @@ LOG = "log"
 REQUEST = "operator/request"
 """People's commands to the process of io, which dates and numbers them."""
 
+TUNE = "operator/tune"
+"""People's changes of settings to the process of io, which checks, dates and numbers them: `section.key=value`."""
+
+REFUSED = "operator/refused"
+"""Requests that have not become commands, with the reason. No topic: nothing of the run follows from them."""
+
 BEAT = "operator/beat"
 """The operator's side says that it is there. No topic: only its absence counts, which becomes a command."""
 

@@ -100,6 +100,8 @@ TOPICS = {
         Topic("foothold/regions", m.FootholdRegions, "elevation_map"),
         Topic("map/elevation", m.ElevationGrid, "elevation_map"),
         Topic("operator/command", m.OperatorCommand, "operator"),
+        Topic("operator/answer", m.OperatorAnswer, "fsm"),
+        Topic("operator/tuning", m.Tuning, "operator"),
         Topic("sim/truth", m.SimTruth, "io", CYCLE_HZ),
         *(Topic(f"status/{name}", m.ProcessStatus, name, 2.0, 2.0) for name in PROCESSES),
     )

@@ -54,7 +54,7 @@ class ClockMaster:
         table = processes(deployment.mpc.profile)
         self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)
         self.refuse = self._stepper.buffers.drop
-        self._desk = OperatorDesk(self.session, self.refuse, deployment.operator)
+        self._desk = OperatorDesk(self.session, self.refuse, deployment)
         self.writers: dict[str, list[bytes]] = {}
         self._remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
         executors: dict[str, Executor] = {"io": _HostedExecutor(self._stepper, self), **self._remote}
@@ -125,8 +125,9 @@ class ClockMaster:
     def _between(self) -> bool:
         """Between two instants: pass on commands, tell the status; true to end."""
         t = self.scheduler.t_ns / NS
-        if count := self._desk.publish(t, self._stepper.take_said()):
-            self.scheduler.inject("operator/command", count)
+        for key, count in self._desk.publish(t, self._stepper.take_said()).items():
+            if count:
+                self.scheduler.inject(key, count)
         self._stepper.tell(t)
         return self._end.due
 

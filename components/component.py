@@ -12,9 +12,12 @@ from enum import Enum
 from typing import Any, ClassVar
 
 from surefoot.bus.message import Message
+from surefoot.bus.messages import Tuning
 from surefoot.bus.topics import TOPICS, topic
 from surefoot.components.memory import Memory
 from surefoot.config.deployment import Deployment
+from surefoot.config.tuning import tuned
+from surefoot.config.typed_toml import ConfigError
 
 
 class Life(Enum):
@@ -118,6 +121,7 @@ class Component:
         trouble: in words why the last step could not do its work; empty when it could. The process's status
             tells it.
         said: what a person has commanded at the robot itself; who passes it on empties it.
+        untuned: in words why a change of the settings was not taken over; empty when all were.
     """
 
     name: ClassVar[str]
@@ -129,10 +133,37 @@ class Component:
 
     complete: tuple[str, ...] = ()
     trouble: str = ""
+    untuned: str = ""
 
     def __init__(self, deployment: Deployment):
         self.deployment = deployment
         self.said: list[str] = []
+        self._original = deployment
+        self._heeded: Tuning | None = None
+        self.set_up()
+
+    def set_up(self) -> None:
+        """Make the parts that hold settings; when it is created, and again when a person has changed some."""
+
+    def heed_tuning(self, inbox: Inbox) -> None:
+        """Between two steps, go on with the settings that a person has changed.
+
+        Parts that hold settings are made anew and take over what the old ones remember. The newest message tells
+        all that was changed: a component that was restarted, or is replayed from the middle, needs no other.
+        """
+        message = inbox.latest("operator/tuning")
+        if message is None or message is self._heeded:
+            return
+        self._heeded = message
+        try:
+            deployment = tuned(self._original, message.assignment)
+        except ConfigError as error:  # io runs with other code
+            self.untuned = f"goes on as it was: {error}"
+            return
+        kept, self.untuned = self.snapshot(), ""
+        self.deployment = deployment
+        self.set_up()
+        self.restore(kept)
 
     def warm_up(self) -> None:
         """Everything slow, once: load, factorise, solve one problem."""

@@ -97,5 +97,5 @@ class Health:
     def _words(self) -> str:
         """All there is to say, the gravest first."""
         bad = f"dropped {self._buffers.last_error}" if self._buffers.bad else ""
-        said = self.reason, self._component.trouble, self.lost, bad, self.note
+        said = self.reason, self._component.trouble, self._component.untuned, self.lost, bad, self.note
         return "; ".join(words for words in said if words)

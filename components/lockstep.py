@@ -7,7 +7,7 @@ from time import perf_counter
 
 from surefoot.bus.codec import check, encode
 from surefoot.bus.message import Message
-from surefoot.bus.messages import OperatorCommand
+from surefoot.bus.messages import OperatorCommand, Tuning
 from surefoot.bus.recording.journal import Journal
 from surefoot.bus.topics import PROCESSES, processes
 from surefoot.components.clock_messages import pack_snapshot
@@ -15,6 +15,7 @@ from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.registry import component_class
 from surefoot.components.scheduler import NS, Scheduler
 from surefoot.config.deployment import Deployment
+from surefoot.config.tuning import Tunings
 
 Listener = Callable[[str, Message], None]
 """Called with (topic, message) when a message becomes visible."""
@@ -118,7 +119,8 @@ class Lockstep:
         self.components = {name: parts.get(name) or component_class(name)(deployment) for name in names}
         self.executors = {name: LocalExecutor(part, self.bus) for name, part in self.components.items()}
         self.scheduler = Scheduler(self.executors, processes(deployment.mpc.profile))
-        self._commands = 0
+        self._commands = self._changes = 0
+        self._tunings = Tunings(deployment)
         for component in self.components.values():
             component.warm_up()
 
@@ -137,6 +139,17 @@ class Lockstep:
         self._commands += 1
         self.bus.show("operator/command", message)
         self.scheduler.inject("operator/command")
+
+    def tune(self, assignment: str) -> None:
+        """Change a setting now, `section.key=value`.
+
+        Raises:
+            ConfigError: it cannot be tuned, or not to this value.
+        """
+        changed = self._tunings.change(assignment)
+        self.bus.show("operator/tuning", Tuning(t=self.t, seq=self._changes, valid=True, assignment=changed))
+        self._changes += 1
+        self.scheduler.inject("operator/tuning")
 
     def run(self, until_s: float, stop: Callable[[], bool] = lambda: False) -> None:
         """Advance to simulated time `until_s` or until `stop()` holds."""

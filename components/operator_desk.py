@@ -2,89 +2,125 @@
 
 from __future__ import annotations
 
+import json
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 
 from surefoot.bus.codec import encode
-from surefoot.bus.messages import OperatorCommand
+from surefoot.bus.messages import OperatorCommand, Tuning
 from surefoot.bus.recording.journal import Journal
-from surefoot.bus.service_keys import BEAT, LOG
+from surefoot.bus.service_keys import BEAT, LOG, REFUSED, REQUEST, TUNE
 from surefoot.bus.session import Session
 from surefoot.components import clock_messages as clock
 from surefoot.components.heartbeat import Heartbeat
 from surefoot.components.topic_buffer import KEPT
-from surefoot.config.operator import Operator
+from surefoot.config.deployment import Deployment
+from surefoot.config.tuning import Tunings
+from surefoot.config.typed_toml import ConfigError
 
-_TOPIC = "operator/command"
+COMMAND, TUNING = "operator/command", "operator/tuning"
 _NAME = "operator"
-_LONGEST = 64  # characters of a command
-_ALONE = ("sit", "stop", "damp", "cut")
+_LONGEST = {REQUEST: 64, TUNE: 200}  # characters
+_ALONE = ("sit", "stop", "halt", "pause", "damp", "cut")
 """What may be asked of a robot whose operator's heartbeat is missing: nothing that makes it move on."""
+
+
+def pack_refusal(request: str, why: str) -> bytes:
+    """What is told of a request that was not passed on."""
+    return json.dumps([request, why]).encode()
+
+
+def unpack_refusal(payload: bytes) -> tuple[str, str]:
+    """The request, and why it was not passed on."""
+    request, why = json.loads(payload)
+    return request, why
 
 
 class OperatorDesk:
     """Turns requests, and the end of the operator's heartbeat, into messages on `operator/command`.
 
-    What is no word is refused here; which words are commands is the state machine's business, which answers.
+    What is no word is refused here; which words are commands is the state machine's business, which answers. A
+    change of the settings is checked here, whole as the deployment is, and becomes a message on `operator/tuning`.
     """
 
-    def __init__(self, session: Session, refuse: Callable[[str], None], settings: Operator, lossless: bool = True):
+    def __init__(
+        self, session: Session, refuse: Callable[[str], None], deployment: Deployment, lossless: bool = True
+    ):
         """For the process that holds the bus.
 
         Args:
             session: the bus.
             refuse: told, by key, of each request that is no word, or cannot be passed on now.
-            settings: of the heartbeat.
+            deployment: of the run: its heartbeat, and what can be tuned.
             lossless: wait for a reader that is late; in real time io waits for nobody.
         """
         self._session, self._refuse, self._lossless = session, refuse, lossless
-        self._requests: deque[bytes] = deque(maxlen=KEPT)
-        self._kept: deque[bytes] = deque(maxlen=KEPT)
-        self._heartbeat = Heartbeat(settings.heartbeat_s)
-        self._sent = 0
+        self._requests: deque[tuple[str, bytes]] = deque(maxlen=KEPT)
+        self._kept: dict[str, deque[bytes]] = {key: deque(maxlen=KEPT) for key in (COMMAND, TUNING)}
+        self._sent = dict.fromkeys(self._kept, 0)
+        self._heartbeat = Heartbeat(deployment.operator.heartbeat_s)
+        self._tunings = Tunings(deployment)
         self._journal = Journal(_NAME)
-        session.subscribe(clock.REQUEST, lambda key, payload: self._requests.append(payload))
+        for key in (REQUEST, TUNE):
+            session.subscribe(key, lambda key, payload: self._requests.append((key, payload)))
         session.subscribe(BEAT, lambda key, payload: self._heartbeat.beat())
-        session.serve(f"{clock.KEPT}/{_TOPIC}", lambda: list(self._kept))
+        for key, kept in self._kept.items():
+            session.serve(f"{clock.KEPT}/{key}", partial(list, kept))
         session.serve_each(f"{LOG}/{_NAME}", self._journal.kept)
 
-    def publish(self, t: float, at_robot: Sequence[str] = ()) -> int:
-        """Publish at time `t` [s] what has been asked; how many commands that were.
+    def publish(self, t: float, at_robot: Sequence[str] = ()) -> dict[str, int]:
+        """Publish at time `t` [s] what has been asked; how many messages that are on each topic.
 
         Args:
             t: of the run.
             at_robot: what a person asks for at the robot itself.
         """
-        commands = [*at_robot, *self._asked()]
+        before = self._sent.copy()
+        for command in at_robot:
+            self._pass_on(t, command)
+        for _ in range(len(self._requests)):
+            key, asked = self._requests.popleft()
+            words = asked.decode(errors="replace")
+            if len(words) > _LONGEST[key] or not words.isprintable() or "\ufffd" in words:
+                self._refuse(f"{key}: {asked[: _LONGEST[key]]!r:.80} is no command")
+            elif words.partition(": ")[0] not in _ALONE and (missing := self._heartbeat.missing):
+                self._turn_down(key, words, f"{words}: {missing}; start surefoot heartbeat, then command again")
+            elif key == REQUEST:
+                self._pass_on(t, words)
+            else:
+                self._tune(t, words)
         if lost := self._heartbeat.lost():
-            commands.append(f"sit: {lost}")
-        for command in commands:
-            payload = encode(OperatorCommand(t=t, seq=self._sent, valid=True, command=command))
-            self._kept.append(payload)
-            self._session.put(_TOPIC, payload, self._lossless)
-            self._journal.note_message(t, _TOPIC, self._sent, payload)
-            self._sent += 1
+            self._pass_on(t, f"sit: {lost}")
         if self._journal.batch_is_due():
             self._log()
-        return len(commands)
+        return {key: count - before[key] for key, count in self._sent.items()}
 
     def close(self) -> None:
         """Hand over the end of the journal."""
         self._log(last=True)
 
-    def _asked(self) -> Iterator[str]:
-        """The requests that are to be passed on."""
-        for _ in range(len(self._requests)):
-            asked = self._requests.popleft()
-            command = asked.decode(errors="replace")
-            if len(command) > _LONGEST or not command.isprintable() or "\ufffd" in command:
-                self._refuse(f"{clock.REQUEST}: {asked[:_LONGEST]!r:.80} is no command")
-            elif command.partition(": ")[0] not in _ALONE and (missing := self._heartbeat.missing):
-                self._refuse(
-                    f"{clock.REQUEST}: {command}: {missing}; start surefoot heartbeat, then command again"
-                )
-            else:
-                yield command
+    def _pass_on(self, t: float, command: str) -> None:
+        self._put(COMMAND, OperatorCommand(t=t, seq=self._sent[COMMAND], valid=True, command=command))
+
+    def _tune(self, t: float, assignment: str) -> None:
+        try:
+            changed = self._tunings.change(assignment)
+        except ConfigError as error:
+            self._turn_down(TUNE, assignment, str(error))
+        else:
+            self._put(TUNING, Tuning(t=t, seq=self._sent[TUNING], valid=True, assignment=changed))
+
+    def _put(self, key: str, message: OperatorCommand | Tuning) -> None:
+        payload = encode(message)
+        self._kept[key].append(payload)
+        self._session.put(key, payload, self._lossless)
+        self._journal.note_message(message.t, key, message.seq, payload)
+        self._sent[key] += 1
+
+    def _turn_down(self, key: str, request: str, why: str) -> None:
+        self._refuse(f"{key}: {why}")
+        self._session.put(REFUSED, pack_refusal(request, why), self._lossless)
 
     def _log(self, last: bool = False) -> None:
         if (batch := self._journal.take_packed(last)) is not None:

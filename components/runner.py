@@ -12,7 +12,7 @@ from surefoot.bus.topics import nominal_hz, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
 from surefoot.components.deployment_desk import check_settings, serve_deployment
-from surefoot.components.operator_desk import OperatorDesk
+from surefoot.components.operator_desk import TUNING, OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.real_time import claim
 from surefoot.components.registry import component_class
@@ -21,6 +21,7 @@ from surefoot.components.run_clock import AnotherRun, run_clock, serve_time
 from surefoot.components.scheduler import NS
 from surefoot.components.stepper import Stepper
 from surefoot.config.deployment import Deployment
+from surefoot.config.tuning import tunable_settings
 
 _LOOK_S = 0.2
 _LET_GO_S = 1.0  # shorter than the supervisor's patience
@@ -65,6 +66,7 @@ class Runner:
         if not self._deployment.network.at_hub:
             check_settings(self._session, self._deployment, self._name, lambda: self._end.due)
         self._stepper.component.warm_up()
+        tunable_settings()  # read now: the first change costs no more than any other
         gc.collect()
         gc.freeze()
         self._stepper.connect()  # a process that is busy with itself would hold up the bus
@@ -75,6 +77,8 @@ class Runner:
         try:
             if self._relieves:
                 self._take_over()
+            elif self._monotonic and not self.hub:
+                self._stepper.hear_again(TUNING)
             self._follow()
         finally:
             self._stepper.close()
@@ -248,7 +252,7 @@ class HubRunner(Runner):
     def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0):
         super().__init__(deployment, name, boot, parent)
         drop = self._stepper.buffers.drop
-        self._desk = OperatorDesk(self._session, drop, deployment.operator, lossless=False)
+        self._desk = OperatorDesk(self._session, drop, deployment, lossless=False)
         serve_time(self._session, deployment)
         serve_deployment(self._session, deployment)
 

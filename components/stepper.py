@@ -70,6 +70,12 @@ class Stepper:
         self.buffers.connect(self._session)
         self._session.serve_each(f"{LOG}/{self.component.name}", self.journal.kept)
 
+    def hear_again(self, key: str) -> None:
+        """Take the newest message of an input for new, if it was published before this process listened."""
+        if key in self.component.inputs:
+            for payload in self._session.ask(f"{clock.KEPT}/{key}")[-1:]:
+                self.buffers.put(key, payload)
+
     def resume(self, resume: clock.Resume, visible: dict[str, int]) -> None:
         """Take the place of a process that is gone, where its last finished step left it."""
         kept = {key: self._await_kept(key) for key in self.component.inputs if visible.get(key)}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from surefoot.config.quantities import Share
-from surefoot.config.typed_toml import ConfigError, Within, ordered
+from surefoot.config.typed_toml import ConfigError, Tuned, Within, ordered
 
 Goal = Annotated[float, Within(0.0, 1000.0)]
 Distance = Annotated[float, Within(0.0, 0.5)]
@@ -27,17 +27,17 @@ Leg = Annotated[int, Within(0, 3)]
 class Fsm:
     """Lengths, times and thresholds of stepping and probing (Sec. II-D)."""
 
-    goal_m: Goal = 1.0  # every foot advances this far in the commanded direction, then the robot stands; 0: never
+    goal_m: Tuned[Goal] = 1.0  # every foot advances this far in the direction commanded, then it stands; 0: never
 
     # Targets and candidates.
-    step_m: Advance = 0.10  # the target base pose lies this far ahead (Sec. II-D.1)
+    step_m: Tuned[Advance] = 0.10  # the target base pose lies this far ahead (Sec. II-D.1)
     step_min_m: Distance = 0.05  # a foot whose target is not even this far ahead of it is left where it is
-    alternatives: Annotated[int, Within(0, 20)] = 3  # (Sec. II-D.3)
-    alternative_spacing_m: Advance = 0.075
+    alternatives: Tuned[Annotated[int, Within(0, 20)]] = 3  # (Sec. II-D.3)
+    alternative_spacing_m: Tuned[Advance] = 0.075
     base_height_min_m: Reach = 0.27  # of the hip axes; the base is lowered as far as this to reach a candidate
     base_height_step_m: Annotated[float, Within(0.001, 0.1)] = 0.01
     leg_length_plan_m: Reach = 0.40  # planned reach: eq. (5) keeps the base a few centimetres short of its pose
-    put_off: bool = (
+    put_off: Tuned[bool] = (
         True  # a leg without a safe foothold waits for another to move; false: STOPPED at once (II-D.5)
     )
     depth_reserve_m: Distance = 0.0  # the ground of a candidate may lie this much lower and must still be in reach
@@ -49,41 +49,41 @@ class Fsm:
     margin_m: Distance = 0.02  # alpha of eq. (5); Table I's barrier holds the CoM another 1-3 cm inside
     margin_extra_m: Distance = 0.02  # the base is sent this much further inside
     shift_s: Duration = 0.4  # least duration
-    shift_speed: Speed = 0.2  # mean speed of longer shifts [m/s]
+    shift_speed: Tuned[Speed] = 0.2  # mean speed of longer shifts [m/s]
     shift_margin_m: Distance = 0.035  # lift-off once the centre of mass is this far inside ...
     shift_rest_speed: Speed = 0.08  # ... slower than this [m/s] ...
     shift_hold_s: Pause = 0.04  # ... for this long
     shift_timeout_s: Duration = 3.0
 
     # Swing.
-    swing_s: Flight = 0.5
-    swing_height_m: Height = 0.08
+    swing_s: Tuned[Flight] = 0.5
+    swing_height_m: Tuned[Height] = 0.08
     swing_v_lift: Annotated[float, Within(0.0, 2.0)] = 0.1  # [m/s]
     swing_v_touch: Speed = 0.1  # slow: an impact is itself a probe [m/s]
     contact_armed: SwingShare = 0.6  # share of the swing after which contact counts as early touch-down
-    early_contact_n: Force = 25.0  # what counts as contact before the touch-down is due [N]
+    early_contact_n: Tuned[Force] = 25.0  # what counts as contact before the touch-down is due [N]
     descend_m: Advance = 0.12  # below the expected ground, then the foothold is given up
 
     # Probing.
     probing: bool = True  # false: the paper's baseline, feet are trusted on contact
     support_polygon: bool = True  # eq. (5)
-    fixed_force_n: Force = 0.0  # > 0: this normal force instead of the optimised envelope
-    force_over_static: Annotated[float, Within(0.5, 3.0)] = 1.0  # most that is asked, of what statics allow
-    cap_forces: bool = False  # mpc and trajopt spare feet what is above their certificates
-    adaptive_probing: bool = False  # a foothold that the map knows to bear enough is not probed again
+    fixed_force_n: Tuned[Force] = 0.0  # > 0: this normal force instead of the optimised envelope
+    force_over_static: Tuned[Annotated[float, Within(0.5, 3.0)]] = 1.0  # most that is asked, of what statics allow
+    cap_forces: Tuned[bool] = False  # mpc and trajopt spare feet what is above their certificates
+    adaptive_probing: Tuned[bool] = False  # a foothold that the map knows to bear enough is not probed again
     dwell_s: Duration = 0.1  # each force (Sec. II-C)
     blend_s: Pause = 0.03  # change from one force to the next, inside the dwell
     settle_s: Pause = 0.12  # from contact to the first force: the base leans towards the foot in this time
     unload_s: Pause = 0.08  # after the last force, before the foot hops on ...
     unload_n: Force = 12.0  # ... it is brought down to this
-    yield_m: Advance = 0.015  # a stance foot that moves this far while another presses ends the press
-    collapse_m: Annotated[float, Within(0.001, 0.3)] = 0.03  # displacement that is a collapse (Sec. II-D.5)
-    held_share: Share = 0.8  # a force counts as held above this share of what was asked
+    yield_m: Tuned[Advance] = 0.015  # a stance foot that moves this far while another presses ends the press
+    collapse_m: Tuned[Annotated[float, Within(0.001, 0.3)]] = 0.03  # displacement that is a collapse (Sec. II-D.5)
+    held_share: Tuned[Share] = 0.8  # a force counts as held above this share of what was asked
 
     # Around the foothold.
     probe_around: bool = True
-    around_radius_m: Advance = 0.025  # the foot pad's radius (Sec. II-D.5)
-    around_drop_m: Distance = 0.02  # a foothold beside which the ground lies this much lower is on an edge
+    around_radius_m: Tuned[Advance] = 0.025  # the foot pad's radius (Sec. II-D.5)
+    around_drop_m: Tuned[Distance] = 0.02  # a foothold beside which the ground lies this much lower is on an edge
     hop_s: Flight = 0.2
     hop_height_m: Height = 0.02
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from surefoot.config.typed_toml import ConfigError, Within
+from surefoot.config.typed_toml import ConfigError, Tuned, Within
 
 _PROFILES = {"paper": (67, 0.015, 0.015, 1.0), "light": (40, 0.025, 0.025, 3.0)}
 """Intervals, interval [s], lead [s] and force scale of each profile; the rate of each is in the topic table."""
@@ -30,7 +30,7 @@ class Mpc:
     intervals: Annotated[int, Within(0, 200)] = 0
     interval_s: Annotated[float, Within(0.0, 0.1)] = 0.0
     lead_s: Annotated[float, Within(0.0, 0.1)] = 0.0
-    force_scale: Annotated[float, Within(0.0, 100.0)] = 0.0
+    force_scale: Tuned[Annotated[float, Within(0.0, 100.0)]] = 0.0
 
     def __post_init__(self) -> None:
         names = ("intervals", "interval_s", "lead_s", "force_scale")

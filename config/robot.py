@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from math import cos, hypot, sqrt
 from pathlib import Path
 from typing import Annotated, Literal
@@ -177,6 +178,7 @@ class Robot:
                     )
 
 
+@cache
 def load_robot(name: str) -> Robot:
     """The robot described by `config/robots/NAME.toml`.
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from surefoot.config.quantities import ConeRounding
-from surefoot.config.typed_toml import ConfigError, Within, ordered
+from surefoot.config.typed_toml import ConfigError, Tuned, Within, ordered
 
 _ROUNDING_S = 1e-9
 
@@ -25,7 +25,7 @@ class Trajopt:
     iterations: Annotated[int, Within(1, 200)] = 5
     tolerance: Annotated[float, Within(0.0, 1.0)] = 1e-3  # largest state change at which the SQP stops
     envelope_trim_s: Annotated[float, Within(0.0, 1.0)] = 0.05  # of the stance phase, left out at both ends
-    envelope_scale: Annotated[float, Within(0.1, 5.0)] = 1.0
+    envelope_scale: Tuned[Annotated[float, Within(0.1, 5.0)]] = 1.0
     cone_regularisation_n2: ConeRounding = 25.0  # rounder than the MPC's: asks at least 10 N of a stance foot
 
     def __post_init__(self) -> None:

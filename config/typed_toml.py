@@ -10,7 +10,7 @@ import types
 import typing
 from operator import attrgetter
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, TypeVar
 
 
 class ConfigError(ValueError):
@@ -23,6 +23,21 @@ class Within:
 
     least: float = -math.inf
     most: float = math.inf
+
+
+@dataclasses.dataclass(frozen=True)
+class Tunable:
+    """Mark of a setting that a person may change while the robot runs.
+
+    It is read anew where it is used, and nothing that has begun counts on its old value. Limits of the safety
+    gate, and those at which the robot is damped, are never tunable.
+    """
+
+
+_T = TypeVar("_T")
+
+Tuned = Annotated[_T, Tunable()]
+"""The mark beside the limits: `gain: Tuned[Annotated[float, Within(0.0, 500.0)]]`, or `Tuned[Force]`."""
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -71,7 +86,7 @@ def build(cls: type, table: Any, path: str = "") -> Any:
             given = table[name]
             if dataclasses.is_dataclass(field.default) and isinstance(given, dict):
                 given = to_table(field.default) | given  # what a part of a section leaves out stays as it is
-            values[name] = _convert(hints[name], given, _join(path, name))
+            values[name] = convert(hints[name], given, _join(path, name))
         elif field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
             raise ConfigError(f"{_join(path, name)}: missing; {where} must give it")
     try:
@@ -91,16 +106,25 @@ def ordered(config: Any, low: str, high: str, why: str) -> None:
         raise ConfigError(f"{low} = {least} is above {high} = {most}: {why}; lower the one or raise the other")
 
 
-def with_override(table: dict[str, Any], assignment: str) -> dict[str, Any]:
-    """A copy of `table` with one `a.b.c=value` applied; the value is TOML, or a bare word taken as a string."""
+def split_assignment(assignment: str) -> tuple[str, Any]:
+    """Path and value of `a.b.c=value`; the value is TOML, or a bare word taken as a string.
+
+    Raises:
+        ConfigError: it is no assignment.
+    """
     dotted, equals, text = assignment.partition("=")
-    if not equals or not dotted:
+    if not equals or not dotted.strip():
         raise ConfigError(f"--set {assignment!r}: write it as section.key=value")
     try:
-        value = tomllib.loads(f"value = {text}")["value"]
+        return dotted.strip(), tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
-        value = text
-    keys = dotted.strip().split(".")
+        return dotted.strip(), text
+
+
+def with_override(table: dict[str, Any], assignment: str) -> dict[str, Any]:
+    """A copy of `table` with one `a.b.c=value` applied, as `split_assignment` reads it."""
+    dotted, value = split_assignment(assignment)
+    keys = dotted.split(".")
     result = dict(table)
     inner = result
     for key in keys[:-1]:
@@ -158,12 +182,18 @@ def _join(path: str, key: str) -> str:
     return f"{path}.{key}" if path else key
 
 
-def _convert(hint: Any, value: Any, path: str) -> Any:
+def convert(hint: Any, value: Any, path: str) -> Any:
+    """A value as TOML gives it, as the type of a field wants it.
+
+    Raises:
+        ConfigError: it has another type, or is out of limits; named by its dotted path.
+    """
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     if origin is typing.Annotated:
-        return _limited(_convert(args[0], value, path), args[1], path)
+        value = convert(args[0], value, path)
+        return next((_limited(value, mark, path) for mark in args[1:] if isinstance(mark, Within)), value)
     if origin in (typing.Union, types.UnionType):
-        return _convert(next(arg for arg in args if arg is not type(None)), value, path)
+        return convert(next(arg for arg in args if arg is not type(None)), value, path)
     if origin is typing.Literal:
         if value not in args:
             raise ConfigError(f"{path} = {value!r}: must be one of {', '.join(map(repr, args))}")
@@ -171,7 +201,7 @@ def _convert(hint: Any, value: Any, path: str) -> Any:
     if origin is dict:
         if not isinstance(value, dict):
             raise ConfigError(f"{path}: expected a table, got {value!r}")
-        return {key: _convert(args[1], item, _join(path, key)) for key, item in value.items()}
+        return {key: convert(args[1], item, _join(path, key)) for key, item in value.items()}
     if origin is tuple:
         return _convert_tuple(args, value, path)
     if isinstance(hint, type) and dataclasses.is_dataclass(hint):
@@ -195,9 +225,7 @@ def _convert_tuple(args: tuple, value: Any, path: str) -> tuple:
     if not isinstance(value, list):
         raise ConfigError(f"{path} = {value!r}: expected a list")
     if len(args) == 2 and args[1] is Ellipsis:
-        return tuple(_convert(args[0], item, f"{path}[{i}]") for i, item in enumerate(value))
+        return tuple(convert(args[0], item, f"{path}[{i}]") for i, item in enumerate(value))
     if len(value) != len(args):
         raise ConfigError(f"{path} = {value!r}: expected {len(args)} entries, got {len(value)}")
-    return tuple(
-        _convert(arg, item, f"{path}[{i}]") for i, (arg, item) in enumerate(zip(args, value, strict=True))
-    )
+    return tuple(convert(arg, item, f"{path}[{i}]") for i, (arg, item) in enumerate(zip(args, value, strict=True)))

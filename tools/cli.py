@@ -21,6 +21,7 @@ from surefoot.tools.commands import (  # noqa: E402
     command,
     cut,
     doctor,
+    drive,
     emulated,
     emulator,
     eval,
@@ -39,11 +40,12 @@ from surefoot.tools.commands import (  # noqa: E402
     status,
     stop,
     topics,
+    tune,
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
 COMMANDS = (
-    *(run, command, stop, cut, heartbeat),
+    *(run, drive, command, tune, stop, cut, heartbeat),
     *(status, restart, child, topics, keys),
     *(doctor, calibrate, service, emulator, emulated),
     *(record, info, replay),

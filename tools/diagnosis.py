@@ -7,7 +7,8 @@ import time
 
 from surefoot.bus.messages import ProcessStatus
 from surefoot.bus.topics import TOPICS
-from surefoot.components.fsm.fsm import DIRECTIONS
+from surefoot.components.fsm.walk_commands import PAUSED
+from surefoot.components.fsm.words import is_direction
 from surefoot.tools.picture import Picture, Watched
 
 SILENT_S = 3.0
@@ -145,11 +146,13 @@ def _of_robot(picture: Picture) -> str:
         return f"the robot is damped: {reference.reason}"
     if reference.state == "HOLD" and picture.command in ("", "hold"):
         return "the robot is held where it lies: `surefoot command stand` gets it up, damp lets it go"
-    if reference.state == "STAND" and picture.command in DIRECTIONS:
+    if reference.state == "STAND" and is_direction(picture.command):
         return ""  # it sets off as soon as it is at its height
     if reference.state == "STAND":
         return "the robot stands and waits for a command: `surefoot command forward` sends it on"
     if reference.state == "STOPPED":
+        if reference.reason == PAUSED:
+            return "the walk is paused: `surefoot command resume` goes on, `surefoot command step` for one step"
         if reference.reason.startswith("commanded"):
             return f"the robot stands ({reference.reason}): `surefoot command forward` sends it on"
         return f"the robot stopped: {reference.reason}; it waits for a command"

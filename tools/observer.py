@@ -30,7 +30,7 @@ class Observer:
     def __init__(self, session: Session, picture: Picture, margin: SupportMargin | None = None):
         """Begin to listen."""
         self._picture, self.margin = picture, margin
-        keys = (*_STREAMS.values(), "fsm/event", "operator/command")
+        keys = (*_STREAMS.values(), "fsm/event", "operator/command", "operator/tuning")
         self._buffers, self._inbox = TopicBuffers(keys, ""), Inbox(keys)
         self._buffers.connect(session)
         session.subscribe("status/*", self._on_status)
@@ -46,6 +46,8 @@ class Observer:
             picture.note_event(event)
         for command in inbox.new("operator/command"):
             picture.note_command(command.command)
+        for tuning in inbox.new("operator/tuning"):
+            picture.tuned = tuning.assignment
         inbox.clear_new()
         picture.note_time()
         if self.margin is not None and picture.estimate is not None and picture.reference is not None:

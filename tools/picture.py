@@ -12,8 +12,8 @@ import pinocchio as pin
 
 from surefoot.bus.messages import FsmEvent, HardwareState, MotionReference, ProcessStatus, StateEstimate
 from surefoot.bus.topics import PROCESSES
-from surefoot.components.fsm.fsm import DIRECTIONS
 from surefoot.components.fsm.support_triangle import SupportTriangle
+from surefoot.components.fsm.words import is_direction
 from surefoot.components.robot_model import build_model
 from surefoot.config.robot import Robot
 from surefoot.tools.supervisor_messages import Notice
@@ -77,6 +77,7 @@ class Picture:
         displacement_m: the largest of a foot on the ground.
         command: what was commanded last; empty before.
         direction: of the walk that was commanded last; empty before.
+        tuned: settings that a person has changed in this run, `section.key=value`.
         notes: what the supervisor did, in words.
         ending: in words why the run ends; empty while it goes on.
         simulated: time is known to wait for every process.
@@ -92,6 +93,7 @@ class Picture:
     displacement_m: float = 0.0
     command: str = ""
     direction: str = ""
+    tuned: tuple[str, ...] = ()
     notes: list[str] = field(default_factory=list)
     ending: str = ""
     simulated: bool = False
@@ -123,7 +125,7 @@ class Picture:
     def note_command(self, command: str) -> None:
         """Take in what the robot was told."""
         self.command = command
-        if command in DIRECTIONS:
+        if is_direction(command):
             self.direction = command
 
     def note_status(self, status: ProcessStatus) -> None:

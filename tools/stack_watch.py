@@ -21,6 +21,7 @@ from surefoot.tools.observer import Observer
 from surefoot.tools.picture import Picture, SupportMargin, Watched
 from surefoot.tools.status_screen import screen
 from surefoot.tools.supervisor_messages import NOTICE, Notice, unpack_notice
+from surefoot.tools.teleop.tuned_run import tuned_already
 
 _LISTEN_S = 1.5  # three statuses of every process
 _DRAW_S = 0.25
@@ -50,6 +51,7 @@ class StackWatch:
         self._deployment: Deployment | None = None
         self._take_notice = self._session.newest(NOTICE)
         self._begun = self._served = time.monotonic()
+        self.picture.tuned = tuned_already(self._session)
 
     def look(self) -> None:
         """Take in what is new."""
@@ -111,6 +113,7 @@ class StackWatch:
             "t": picture.t,
             "state": reference.state if reference is not None else None,
             "real_time_factor": picture.real_time_factor(recent=True),
+            "tuned": list(picture.tuned),
             "notes": picture.notes,
             "processes": {name: _row(watched, wrong.get(name, "")) for name, watched in picture.processes.items()},
         }

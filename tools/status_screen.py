@@ -43,9 +43,11 @@ def screen(picture: Picture, alternatives: int | None, title: str, closing: str 
         closing: how the run stands, in words; empty when there is nothing to say.
     """
     why, well = why_nothing_moves(picture), health(picture)
-    parts: list[RenderableType] = [_machine(picture, alternatives, title), process_table(picture)]
+    parts: list[RenderableType] = [machine(picture, alternatives, title), process_table(picture)]
     if well.plain:
         parts.append(well)
+    if picture.tuned:
+        parts.append(Text(f" tuned: {', '.join(picture.tuned)}", style="cyan", overflow="ellipsis", no_wrap=True))
     parts.append(_events(picture, _EVENTS - _WHY_LINES if why else _EVENTS))
     if why:
         parts.append(Text(f"Why nothing moves: {why}.", style="bold yellow"))
@@ -60,7 +62,8 @@ def event_line(event) -> str:
     return f"{event.t:8.2f} s  {leg}  {event.kind}: {event.reason}"
 
 
-def _machine(picture: Picture, alternatives: int | None, title: str) -> Panel:
+def machine(picture: Picture, alternatives: int | None, title: str) -> Panel:
+    """What the state machine is at: its state and why, the leg, its candidate, the force, the margin."""
     reference, estimate = picture.reference, picture.estimate
     if reference is None or estimate is None:
         io = picture.processes["io"].status

@@ -58,6 +58,18 @@ class Course:
             self._first.remove(leg)
         self._put_off.add(leg)
 
+    def give_back(self, leg: int) -> None:
+        """A leg that was to move has not left the ground: its turn comes again."""
+        if leg not in self._first:
+            self._place = self._settings.crawl_order.index(leg)
+
+    def try_again(self) -> None:
+        """The legs that were put off need not wait for another one to move; the first of them is next."""
+        late = [leg for leg in self._settings.crawl_order if leg in self._put_off]
+        self._put_off.clear()
+        if late:
+            self.give_back(late[0])
+
     @property
     def stuck(self) -> bool:
         """A leg has found no foothold and no other has moved since."""

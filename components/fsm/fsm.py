@@ -3,41 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from enum import StrEnum
 from typing import ClassVar
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.bus.messages import ControlMode, FsmEvent, MotionReference, StateEstimate
+from surefoot.bus.messages import FsmEvent, MotionReference, OperatorAnswer, OperatorCommand, StateEstimate
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.fsm.observation import Observation
+from surefoot.components.fsm.posture import Posture, posture_reference
 from surefoot.components.fsm.probing_cycle import ProbingCycle
 from surefoot.components.fsm.state import State
+from surefoot.components.fsm.walk_commands import end, obey, turn_to
+from surefoot.components.fsm.words import WALK_WORDS, Answer, Command, NoCommand, read_command, refused, taken
 from surefoot.components.memory import Memory
 from surefoot.components.robot_model import build_model
 from surefoot.components.robot_model.rotation import matrix_of, rpy_of
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import JOINT_NAMES
 
-DIRECTIONS = {"forward": (1.0, 0.0), "backward": (-1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}
-"""Commanded directions in the base frame."""
-
-COMMANDS = (*DIRECTIONS, "hold", "stand", "sit", "stop", "damp", "cut")
-"""Everything an operator may ask for."""
-
 _CUT = "cut by command"
 """Why the robot is damped; nothing gets it up before a person has said damp."""
-
-
-class Posture(StrEnum):
-    """States outside Fig. 6."""
-
-    DAMP = "DAMP"
-    HOLD = "HOLD"
-    STAND_UP = "STAND_UP"
-    STAND = "STAND"
-    SIT_DOWN = "SIT_DOWN"
 
 
 class Fsm(Component):
@@ -48,8 +34,20 @@ class Fsm(Component):
     """
 
     name: ClassVar[str] = "fsm"
-    inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "operator/command", "trajopt/plan", "foothold/regions")
-    outputs: ClassVar[tuple[str, ...]] = ("fsm/reference", "fsm/event", "trajopt/request", "foothold/request")
+    inputs: ClassVar[tuple[str, ...]] = (
+        "state/estimate",
+        "operator/command",
+        "operator/tuning",
+        "trajopt/plan",
+        "foothold/regions",
+    )
+    outputs: ClassVar[tuple[str, ...]] = (
+        "fsm/reference",
+        "fsm/event",
+        "operator/answer",
+        "trajopt/request",
+        "foothold/request",
+    )
     memory: ClassVar[Memory] = Memory(
         "_reason",
         "_joint_from",
@@ -65,12 +63,10 @@ class Fsm(Component):
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
         robot = deployment.load_robot()
-        self._settings = deployment.fsm
         self._stand_q = np.tile(robot.nominal.stand_q, 4)
         self._lie_q = np.tile(robot.nominal.lie_q, 4)
         self._model = build_model(robot)
         self._data = self._model.createData()
-        self._cycle = ProbingCycle(robot, deployment.fsm, self._report)
         self._posture: Posture | None = Posture.DAMP
         self._reason = "waiting for a command"
         self._joint_from = self._joint_to = self._stand_q
@@ -79,15 +75,20 @@ class Fsm(Component):
         self._events: list[FsmEvent] = []
         self._t = 0.0
 
+    def set_up(self) -> None:
+        self._settings = self.deployment.fsm
+        self._cycle = ProbingCycle(self.deployment.load_robot(), self._settings, self._report)
+
     def activate(self, t: float, inbox: Inbox) -> bool:
         return True
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        self.heed_tuning(inbox)
         self._t = t
         estimate = inbox.fresh("state/estimate", t)
         now = self._observe(t, estimate) if estimate is not None else None
         for message in inbox.new("operator/command"):
-            self._command(message.command, now)
+            outbox.publish("operator/answer", self._answer(message, now))
         if now is None:
             self._lost()
         elif self._posture is not Posture.DAMP and np.abs(now.rpy[:2]).max() > self._settings.tilt_max:
@@ -99,65 +100,107 @@ class Fsm(Component):
 
     # Commands -------------------------------------------------------------------------------------------
 
-    def _command(self, asked: str, now: Observation | None) -> None:
-        command = asked.partition(": ")[0]  # then why, where a person has not typed it
-        if command not in COMMANDS:
-            self._report("refused", f"unknown command {asked!r}; commands are {', '.join(COMMANDS)}")
-        elif command == "damp":
-            self._damp("waiting for a command" if self._cut else "commanded")
-        elif command == "cut":
-            self._damp(_CUT)
-        elif now is None:
-            self._wish = asked
-            self._report("waiting", f"{command}: kept until there is a fresh state/estimate")
-        elif command == "hold":
-            self._hold(now)
-        elif command == "sit":
-            self._sit(now, asked)
-        elif command == "stop":
-            self._wish = ""
-            if self._posture is None:
-                self._cycle.stop(now, "commanded stop")
-        elif self._cut:
-            self._report("refused", f"{command}: the torque was cut; command damp first")
-        else:
-            self._go(command, now)
+    def _answer(self, message: OperatorCommand, now: Observation | None) -> OperatorAnswer:
+        answer = self._obey(message.command, now)
+        return OperatorAnswer(
+            t=self._t,
+            valid=True,
+            command=message.command,
+            number=message.seq,
+            taken=answer.taken,
+            words=answer.words,
+        )
 
-    def _go(self, command: str, now: Observation) -> None:
+    def _obey(self, asked: str, now: Observation | None) -> Answer:
+        """Do what is asked; what cannot be done is an event too."""
+        try:
+            answer = self._command(read_command(asked), asked, now)
+        except NoCommand as error:
+            answer = refused(str(error))
+        if not answer.taken:
+            self._report("refused", answer.words)
+        return answer
+
+    def _command(self, command: Command, asked: str, now: Observation | None) -> Answer:
+        word = command.word
+        if word == "damp":
+            self._damp("waiting for a command" if self._cut else "commanded")
+            return taken("every joint is braked")
+        if word == "cut":
+            self._damp(_CUT)
+            return taken("no torque before damp is said")
+        if now is None:
+            return self._wait(word, asked)
+        if word == "hold":
+            return self._hold(now)
+        if word == "sit":
+            return self._sit(now, asked)
+        if word == "stop":
+            return self._stop(now)
+        if self._cut:
+            return refused(f"{word}: the torque was cut; command damp first")
+        if word == "stand" or command.direction_B is not None:
+            return self._go(command, now)
+        if self._posture is not None:
+            return refused(f"{word}: the robot does not walk in {self._posture}; give a direction first")
+        if word in ("halt", "pause"):
+            self._wish = ""
+        return obey(self._cycle, word, now)
+
+    def _wait(self, word: str, asked: str) -> Answer:
+        """Nobody knows how the robot stands."""
+        if word in WALK_WORDS:
+            return refused(f"{word}: state/estimate is missing or stale: is the estimator running?")
+        self._wish = asked
+        words = f"{word}: kept until there is a fresh state/estimate"
+        self._report("waiting", words)
+        return taken(words)
+
+    def _stop(self, now: Observation) -> Answer:
+        self._wish = ""
+        if self._posture is not None:
+            return taken(f"the robot does not walk in {self._posture}")
+        end(self._cycle, now, "commanded stop")
+        return taken("the robot comes to rest")
+
+    def _go(self, command: Command, now: Observation) -> Answer:
         """stand or a direction: stand up first where need be."""
+        asked = command.asked
         if self._posture is Posture.DAMP and self._settings.hold_s > 0.0:
-            self._wish = command
-            self._stiffen(now, f"commanded {command}")
+            self._wish = asked
+            self._stiffen(now, f"commanded {asked}")
         elif self._posture in (Posture.DAMP, Posture.SIT_DOWN):
-            self._wish = command
-            self._move_joints(Posture.STAND_UP, self._stand_q, now, f"commanded {command}")
-        elif self._posture is Posture.HOLD:
-            self._wish = command  # obeyed once the gains are up
-        elif self._posture is Posture.STAND_UP:
-            self._wish = command
-        elif command == "stand":
+            self._wish = asked
+            self._move_joints(Posture.STAND_UP, self._stand_q, now, f"commanded {asked}")
+        elif self._posture in (Posture.HOLD, Posture.STAND_UP):
+            self._wish = asked  # obeyed once the gains are up, or the robot stands
+        elif command.direction_B is None:
             if self._posture is None:
-                self._cycle.stop(now, "commanded stand")
+                end(self._cycle, now, "commanded stand")
+            return taken("the robot stands")
         elif self._posture is Posture.STAND or self._cycle.state == State.STOPPED:
             self._posture = None
-            self._cycle.walk(now, np.array(DIRECTIONS[command]), command)
+            self._cycle.walk(now, np.array(command.direction_B), asked)
+            return taken("the robot sets off")
         else:
-            self._wish = command
-            self._cycle.stop(now, f"commanded {command}")
+            self._wish = asked
+            return turn_to(self._cycle, now, f"commanded {asked}")
+        return taken("the robot stands up first")
 
-    def _hold(self, now: Observation) -> None:
-        if self._posture is Posture.DAMP:
-            self._stiffen(now, "commanded hold")
-        else:
-            self._report("refused", "hold: the robot is not damped; command sit, or damp, first")
+    def _hold(self, now: Observation) -> Answer:
+        if self._posture is not Posture.DAMP:
+            return refused("hold: the robot is not damped; command sit, or damp, first")
+        self._stiffen(now, "commanded hold")
+        return taken("the joints are held where they are")
 
-    def _sit(self, now: Observation, asked: str) -> None:
+    def _sit(self, now: Observation, asked: str) -> Answer:
         """Settle from any state; a leg in the air is put down first."""
         if self._posture is None and self._cycle.state != State.STOPPED:
             self._wish = asked
             self._cycle.stop(now, f"commanded {asked}")
         elif self._posture not in (Posture.DAMP, Posture.SIT_DOWN):
             self._sit_down(now, asked)
+        return taken("the robot sits down, then it is damped")
 
     def _sit_down(self, now: Observation, asked: str) -> None:
         self._wish = ""
@@ -211,7 +254,7 @@ class Fsm(Component):
         if self._wish and rests and now.t >= self._cycle.reference.base_t1:
             wish, self._wish = self._wish, ""
             if wish != "stand" or self._posture is Posture.DAMP:
-                self._command(wish, now)
+                self._obey(wish, now)
 
     def _stiffen(self, now: Observation, reason: str) -> None:
         """The joints are held where they are, by gains that come up in `hold_s`."""
@@ -263,18 +306,14 @@ class Fsm(Component):
             if self._posture is None:
                 return message
             return replace(message, state=str(self._posture), reason=self._reason)
-        mode = ControlMode.DAMP if self._posture is Posture.DAMP else ControlMode.JOINT
-        return MotionReference(
-            t=t,
-            valid=True,
-            state=str(self._posture),
-            reason=self._reason,
-            mode=mode,
+        return posture_reference(
+            t,
+            self._posture,
+            self._reason,
             joint_from=self._joint_from,
             joint_to=self._joint_to,
             joint_t0=self._joint_t0,
             joint_t1=self._joint_t1,
-            normal_W=np.array([0.0, 0.0, 1.0]),
         )
 
     def _send(self, outbox: Outbox) -> None:

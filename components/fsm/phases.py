@@ -15,13 +15,13 @@ from surefoot.components.fsm.leg_turn import LegTurn
 from surefoot.components.fsm.motion import Motion
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.planning import Planning
-from surefoot.components.fsm.probing import Probing
+from surefoot.components.fsm.probing import SKIPPED, Probing
 from surefoot.components.fsm.retreat import Retreat
 from surefoot.components.fsm.stance_watch import StanceWatch
 from surefoot.components.fsm.state import State
 from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
-from surefoot.config.robot import Robot
+from surefoot.config.robot import LEGS, Robot
 
 
 class Phases:
@@ -50,6 +50,7 @@ class Phases:
         event: Callable[..., None],
     ):
         """`event(kind, reason, p_WF, **figures)` reports what happens to the leg whose turn it is."""
+        self._balance, self._motion, self._turn, self._event = balance, motion, turn, event
         self._swing = swing = LegSwing(settings, planner, course, watch, motion, turn, event)
         self.planning = Planning(robot, settings, planner, course, watch, certificates, motion, turn, event)
         self.step = LegStep(settings, course, balance, swing, motion, turn, event)
@@ -77,6 +78,30 @@ class Phases:
                 return self.retreat.return_safe(now)
             case State.STOPPED:
                 return None
+
+    def skip(self, state: State, now: Observation) -> Arrow | None:
+        """Give up the foothold of the moment; None: the foot is unloaded first."""
+        match state:
+            case State.SEND | State.OPT | State.MOVE:
+                return self.planning.skip(state, SKIPPED)
+            case State.PROBE:
+                self.probing.skip(now)
+                return None
+            case _:
+                self._event("rejected", SKIPPED, now.estimate.p_WF[self._turn.leg])
+                return Arrow(State.LEG_UP, SKIPPED)
+
+    def keeps_down(self, now: Observation) -> str:
+        """Why the foot that presses must not be lifted now, or "": the other three have to carry the robot."""
+        leg, motion = self._turn.leg, self._motion
+        if self.probing.ends:
+            return f"the press ends already: {self.probing.ends}"
+        weak = [LEGS[other] for other in range(4) if other != leg and not motion.trusted[other]]
+        if weak:
+            return f"{', '.join(weak)} does not stand on ground that has borne: {LEGS[leg]} stays down"
+        if not self._balance.inside(now, motion.reference, leg):
+            return f"the base is not inside the other three feet: {LEGS[leg]} stays down; say it again"
+        return ""
 
     def decide(self, fork: Fork, why: str, now: Observation) -> Arrow:
         """Which way from a fork, come to for a reason."""

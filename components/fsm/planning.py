@@ -149,6 +149,13 @@ class Planning:
         self._course.put_off(turn.leg)
         return Arrow(State.RETURN_SAFE if motion.in_air else Fork.BACK, _NO_FOOTHOLD)
 
+    def skip(self, state: State, why: str) -> Arrow:
+        """A candidate is given up before the foot has set off for it, or while it waits in the air."""
+        turn = self._turn
+        foothold_W = turn.candidates_W[turn.candidate] if state == State.SEND else turn.foothold_W
+        turn.failed_W.append(foothold_W.copy())
+        return self._reject(why, foothold_W)
+
     def _unfit(self, answer: FootholdRegions) -> str:
         """Why the answer's foothold is not worth a step, or "": the map forbids it, or it has been tried."""
         leg = self._turn.leg

@@ -22,6 +22,9 @@ from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import GRAVITY, LEGS, Robot
 
+SKIPPED = "skipped by command"
+"""Why a foothold is given up that has not failed."""
+
 
 class Probing:
     """The test of the foothold that the leg whose turn it is has reached, and of the points around it."""
@@ -84,8 +87,7 @@ class Probing:
         if moved > settings.collapse_m:
             return self._collapsed(now, moved)
         if self._eased:
-            over = now.t >= reference.probe_t0 + settings.unload_s
-            return self.stay(now, self._eased) if over else None
+            return self._unloaded(now) if now.t >= reference.probe_t0 + settings.unload_s else None
         for held in press.update(now.t, now.normal_force(leg), normal):
             self._force_held(now, held, moved)
         self._ease_for_others(now)
@@ -97,6 +99,28 @@ class Probing:
         if not settings.probe_around:
             return self._accept(now, "all forces were borne")
         return self._next_point(now) if now.t >= reference.swing_t0 - 1e-9 else None
+
+    @property
+    def ends(self) -> str:
+        """Why the press is being broken off, or ""."""
+        return self._eased
+
+    def press_again(self, now: Observation) -> Arrow:
+        """The foot presses once more, from its first force."""
+        self._repeated = False
+        return self._begin_press(now)
+
+    def skip(self, now: Observation) -> None:
+        """The foothold is given up: the foot is unloaded, then lifted."""
+        self._eased = SKIPPED
+        self._motion.ease(self._turn.leg, now, self._settings.unload_n)
+
+    def _unloaded(self, now: Observation) -> Arrow:
+        """The press that was broken off is over: the foot leaves a foothold that is given up, or stays."""
+        if self._eased != SKIPPED:
+            return self.stay(now, self._eased)
+        self._event("rejected", SKIPPED, now.estimate.p_WF[self._turn.leg])
+        return Arrow(State.LEG_UP, SKIPPED)
 
     def stay(self, now: Observation, why: str) -> Arrow:
         """The press was broken off: the foot stays, certified for what it has borne, or to be probed again."""

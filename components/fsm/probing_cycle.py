@@ -134,6 +134,71 @@ class ProbingCycle:
             self.motion.plant(now)
             self.stand(now, reason)
 
+    @property
+    def under_way(self) -> bool:
+        """A leg is in the air, presses, or goes back: it has a step to finish."""
+        return self.motion.in_air or self.state in (State.PROBE, State.RETURN_SAFE)
+
+    @property
+    def ends(self) -> str:
+        """Why the robot is to rest when the step is over, or ""."""
+        return self._turn.halt
+
+    @property
+    def leg_name(self) -> str:
+        """Of the leg under way."""
+        return LEGS[self._turn.leg]
+
+    @property
+    def stuck(self) -> bool:
+        """The walk has ended on four feet because a leg has found no foothold."""
+        return self.state == State.STOPPED and not self.motion.in_air and self._course.stuck
+
+    def halt(self, now: Observation, reason: str) -> None:
+        """Come to rest on four feet: when the step is over, or at once where no leg has left the ground."""
+        if self.under_way:
+            self._turn.halt = reason
+            return
+        if self.state in (State.SEND, State.OPT, State.MOVE):
+            self._course.give_back(self._turn.leg)
+        self.motion.plant(now)
+        self.stand(now, reason)
+
+    def rest(self, now: Observation, reason: str) -> None:
+        """Go on resting, for another reason."""
+        self._enter(State.STOPPED, now, reason)
+
+    def go_on(self, now: Observation, reason: str, halt: str = "") -> None:
+        """The walk goes on with the next leg; with `halt` it is to rest after that one, for this reason."""
+        self._enter(State.PRE_OPT, now, reason)
+        self._turn.halt = halt
+
+    def keep_walking(self) -> None:
+        """It is not to rest after the step."""
+        self._turn.halt = ""
+
+    def try_again(self, now: Observation, reason: str) -> None:
+        """The legs that found no foothold try once more."""
+        self._course.try_again()
+        self._enter(State.PRE_OPT, now, reason)
+
+    def keeps_down(self, now: Observation) -> str:
+        """Why the foot that presses must not be lifted now, or ""."""
+        return self._phases.keeps_down(now)
+
+    def skip(self, now: Observation) -> None:
+        """Give up the foothold of the moment for the next candidate."""
+        self._follow(self._phases.skip(self.state, now), now)
+
+    def press_again(self, now: Observation) -> None:
+        """The foot that presses does so once more, from the first force."""
+        self._follow(self._phases.probing.press_again(now), now)
+
+    @property
+    def press_ends(self) -> str:
+        """Why the press is being broken off, or ""."""
+        return self._phases.probing.ends
+
     def regions(self, answer: FootholdRegions, now: Observation) -> None:
         """The map's answer to a foothold request."""
         if self.state == State.SEND and self.questions.answered_by(answer):
@@ -199,6 +264,8 @@ class ProbingCycle:
                 self._report("stopped", why)
             case State.STOPPED:
                 self._rest(now, why)
+            case State.PRE_OPT if self._turn.halt:
+                self._rest(now, self._turn.halt)
             case State():
                 self._phases.begin(to, why, now)
                 self._enter(to, now, why)

@@ -45,7 +45,7 @@ class Mpc(Component):
     """
 
     name: ClassVar[str] = "mpc"
-    inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "fsm/reference")
+    inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "fsm/reference", "operator/tuning")
     outputs: ClassVar[tuple[str, ...]] = ("mpc/policy",)
     memory: ClassVar[Memory] = Memory("_contact", "_t", _iterate=Trajectory)
 
@@ -53,8 +53,6 @@ class Mpc(Component):
         super().__init__(deployment)
         robot, settings = deployment.load_robot(), deployment.mpc
         self._dt = settings.interval_s
-        weights = replace(deployment.ocp.weights, force=settings.force_scale * deployment.ocp.weights.force)
-        self._problem = Problem(replace(deployment.ocp, weights=weights), robot, settings.intervals)
         self._sampler = MotionSampler(robot, settings.intervals, settings.interval_s)
         self._model = build_model(robot)
         self._data = self._model.createData()
@@ -64,6 +62,11 @@ class Mpc(Component):
         self._iterate: Trajectory | None = None
         self._contact: np.ndarray | None = None
         self._t = 0.0
+
+    def set_up(self) -> None:
+        ocp, settings = self.deployment.ocp, self.deployment.mpc
+        weights = replace(ocp.weights, force=settings.force_scale * ocp.weights.force)
+        self._problem = Problem(replace(ocp, weights=weights), self.deployment.load_robot(), settings.intervals)
 
     def warm_up(self) -> None:
         """One solve for a standing robot: the first real tick is as fast as any."""
@@ -77,6 +80,7 @@ class Mpc(Component):
         self._problem.converge(nodes, state, 2, 0.0)
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        self.heed_tuning(inbox)
         estimate, reference = inbox.fresh("state/estimate", t), inbox.fresh("fsm/reference", t)
         lost = "state/estimate" if estimate is None else "fsm/reference" if reference is None else ""
         self.trouble = f"{lost} is missing or stale" if lost else ""

@@ -16,27 +16,26 @@ from surefoot.components.ocp.riccati import SolverFailed
 from surefoot.components.robot_model.rotation import matrix_of, rpy_of
 from surefoot.components.trajopt.envelope import grf_envelope
 from surefoot.components.trajopt.stride import Stride
-from surefoot.config.deployment import Deployment
 
 
 class Trajopt(Component):
     """Optimises eqs. (1)-(4) over one stride, from the reference and at rest; a failure is named in the plan."""
 
     name: ClassVar[str] = "trajopt"
-    inputs: ClassVar[tuple[str, ...]] = ("trajopt/request", "state/estimate")
+    inputs: ClassVar[tuple[str, ...]] = ("trajopt/request", "state/estimate", "operator/tuning")
     outputs: ClassVar[tuple[str, ...]] = ("trajopt/plan",)
     memory: ClassVar[Memory] = Memory("trouble")
 
-    def __init__(self, deployment: Deployment):
-        super().__init__(deployment)
+    def set_up(self) -> None:
+        deployment, settings = self.deployment, self.deployment.trajopt
         robot = deployment.load_robot()
-        settings = deployment.trajopt
         rounder = replace(deployment.ocp, cone_regularisation_n2=settings.cone_regularisation_n2)
         self._settings = settings
         self._problem = Problem(rounder, robot, settings.intervals)
         self._stride = Stride(robot, settings, deployment.fsm)
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        self.heed_tuning(inbox)
         for request in inbox.new("trajopt/request"):
             estimate = inbox.fresh("state/estimate", t)
             if estimate is None:

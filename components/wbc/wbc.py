@@ -27,7 +27,12 @@ class Wbc(Component):
     """
 
     name: ClassVar[str] = "wbc"
-    inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "mpc/policy", "fsm/reference")
+    inputs: ClassVar[tuple[str, ...]] = (
+        "state/estimate",
+        "mpc/policy",
+        "fsm/reference",
+        "operator/tuning",
+    )
     outputs: ClassVar[tuple[str, ...]] = ("joint/command",)
     memory: ClassVar[Memory] = Memory(
         "_failures", "_last_force", "_last_t", _target=BaseTarget, _observer=MomentumObserver
@@ -36,17 +41,20 @@ class Wbc(Component):
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
         robot = deployment.load_robot()
-        self._settings = deployment.wbc
         self._legs = LegKinematics(robot)
-        self._qp = WholeBodyQp(robot, self._settings)
         self._stand_q = np.tile(robot.nominal.stand_q, 4)
         self._friction = np.array(robot.per_joint("friction"))
         self._damping = np.array(robot.per_joint("damping"))
-        self._target = BaseTarget(self._settings, robot.mass)
-        self._observer = MomentumObserver(self._settings, robot.mass)
         self._failures = 0
         self._last_force = np.zeros((4, 3))
         self._last_t = 0.0
+
+    def set_up(self) -> None:
+        robot, settings = self.deployment.load_robot(), self.deployment.wbc
+        self._settings = settings
+        self._qp = WholeBodyQp(robot, settings)
+        self._target = BaseTarget(settings, robot.mass)
+        self._observer = MomentumObserver(settings, robot.mass)
 
     def warm_up(self) -> None:
         """Set the solver up on a standing robot: the first real step only updates it."""
@@ -57,6 +65,7 @@ class Wbc(Component):
         self._qp.solve(Task(np.ones(4, bool), wrench, quarter, np.full(4, 1e-2), np.zeros((4, 3))))
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
+        self.heed_tuning(inbox)
         estimate, reference = inbox.fresh("state/estimate", t), inbox.latest("fsm/reference")
         lost = "state/estimate" if estimate is None else "fsm/reference" if reference is None else ""
         balances = reference is not None and reference.valid and reference.mode == ControlMode.BALANCE

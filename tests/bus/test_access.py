@@ -97,6 +97,7 @@ def test_the_operator_hears_the_robot_and_speaks_for_its_own_processes(hub, lapt
     for key in (
         *ITS_OWN,
         "operator/request",
+        "operator/tune",
         "operator/beat",
         "supervisor/request",
         *(f"{prefix}/mpc" for prefix in OF_A_PROCESS),
@@ -209,7 +210,7 @@ def test_a_command_comes_in_by_the_deployment_and_the_operators_keys(network, hu
         f'address = "127.0.0.1"\nkeys_dir = "{network.keys_dir}"\n'
     )
     robot = Ear(hub)
-    assert main(["command", "stand", "--connect", str(config)]) == 0
+    assert main(["command", "stand", "--connect", str(config)]) == 1  # it goes out; nobody is there to obey
     robot.wait("operator/request", b"stand")
     assert main(["restart", "mpc", "--connect", str(config)]) == 0
     robot.wait("supervisor/request", b"restart mpc")
@@ -220,7 +221,8 @@ def test_a_command_comes_in_by_the_deployment_and_the_operators_keys(network, hu
 
 def test_without_another_host_the_operator_may_only_ask():
     rules = {rule["id"]: rule for rule in access_control(Network(listen="tls/0.0.0.0:7448"), "ns")["rules"]}
-    assert rules["say"]["key_exprs"] == ["ns/operator/request", "ns/operator/beat", "ns/supervisor/request"]
+    asked = ["operator/request", "operator/tune", "operator/beat", "supervisor/request"]
+    assert rules["say"]["key_exprs"] == [f"ns/{key}" for key in asked]
     assert "answer" not in rules
 
 

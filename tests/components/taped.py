@@ -53,6 +53,9 @@ class Taped(Component):
         self._said.clear()
         self._waiting.clear()
 
+    def snapshot(self):
+        return self.part.snapshot()
+
     def heir(self, steps):
         """Another component with the memory of after so many steps."""
         other = component_class(self.name)(self.deployment)
@@ -132,10 +135,10 @@ _MUTATORS = {"append", "extend", "add", "remove", "discard", "clear", "pop", "up
 
 
 def written(source):
-    """Names of the attributes that methods in a module's source write to, other than on creation."""
+    """Names of the attributes that methods in a module's source write to, other than on creation or tuning."""
     names = set()
     for function in ast.walk(ast.parse(source)):
-        if not isinstance(function, ast.FunctionDef) or function.name == "__init__":
+        if not isinstance(function, ast.FunctionDef) or function.name in ("__init__", "set_up"):
             continue
         for node in ast.walk(function):
             if isinstance(node, ast.Assign):

@@ -6,6 +6,7 @@ from surefoot.bus.codec import decode
 from surefoot.bus.messages import OperatorCommand
 from surefoot.bus.service_keys import BEAT, REQUEST
 from surefoot.components.operator_desk import OperatorDesk
+from surefoot.config.deployment import Deployment
 from surefoot.config.operator import Operator
 
 
@@ -35,14 +36,15 @@ class Side:
 
     def __init__(self, heartbeat_s):
         self.bus, self.refused = Bus(), []
-        self.desk = OperatorDesk(self.bus, self.refused.append, Operator(heartbeat_s=heartbeat_s))
+        deployment = Deployment(operator=Operator(heartbeat_s=heartbeat_s))
+        self.desk = OperatorDesk(self.bus, self.refused.append, deployment)
 
     def say(self, key, text=""):
         self.bus.ears[key](key, text.encode())
 
     def commands(self, t=0.0, at_robot=()):
         before = len(self.bus.said)
-        count = self.desk.publish(t, at_robot)
+        count = self.desk.publish(t, at_robot)["operator/command"]
         new = self.bus.said[before:]
         assert count == len(new) and [each.seq for each in new] == list(range(before, before + count))
         return [(each.t, each.command) for each in new]

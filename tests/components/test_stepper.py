@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from surefoot.bus.codec import decode, encode
-from surefoot.bus.messages import FsmEvent, OperatorCommand, StateEstimate
+from surefoot.bus.messages import FsmEvent, OperatorCommand, StateEstimate, Tuning
 from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components import clock_messages as clock
 from surefoot.components.elevation_map.elevation_map import ElevationMap
@@ -124,20 +124,16 @@ def test_on_the_monotonic_clock_nobody_can_tell_the_two_apart():
     old, new, second, silent_s = handed_over(0.02)
     assert silent_s == 0.0 and second.health.note == ""
     said = [(type(m).__name__, m.boot, m.seq) for m in old + new]
-    assert said == [
-        ("MotionReference", 3, 0),
-        ("FsmEvent", 3, 0),
-        ("MotionReference", 3, 1),
-        ("FsmEvent", 3, 1),
-    ]
-    assert "moonwalk" in old[1].reason and new[1].reason.startswith("forward: kept until")  # each command once
+    kinds = ("OperatorAnswer", "MotionReference", "FsmEvent")
+    assert said == [(kind, 3, seq) for seq in (0, 1) for kind in kinds]
+    assert "moonwalk" in old[2].reason and new[2].reason.startswith("forward: kept until")  # each command once
 
 
 def test_with_a_memory_that_is_too_old_it_begins_anew_when_all_have_noticed():
     _, new, second, silent_s = handed_over(0.2)
     assert silent_s == TOPICS["fsm/reference"].stale_after_s == 0.1
     assert second.health.note == "began anew: its memory was 0.200 s old, limit 0.1 s"
-    assert [(m.boot, m.seq) for m in new] == [(4, 0), (4, 0)]
+    assert [(m.boot, m.seq) for m in new] == [(4, 0), (4, 0), (4, 0)]
 
 
 def test_the_last_messages_are_handed_over_too():
@@ -164,3 +160,13 @@ def test_a_map_is_as_before_after_a_rehearsal():
     assert pack(second) == blank != pack(first)
     assert second.take_over(first.place(), 100.0) == 0.0  # a map does not age
     assert pack(second) == pack(first)
+
+
+def test_one_that_begins_anew_hears_what_was_changed_before_it_listened():
+    changed = [Tuning(valid=True, seq=seq, assignment=(f"fsm.swing_s=0.{6 + seq}",)) for seq in (0, 1)]
+    stepper, session = live()
+    session.ask = lambda key: [encode(each) for each in changed] if key == "kept/operator/tuning" else []
+    stepper.hear_again("operator/tuning")
+    step(stepper, 0.1)
+    assert stepper.component.deployment.fsm.swing_s == 0.7 and not stepper.buffers.bad
+    stepper.hear_again("hw/depth")  # no input of its own

@@ -21,7 +21,8 @@ def numbers(hint, path):
     """(path, limits) of every number a type holds; limits is None where it has none."""
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     if origin is typing.Annotated:
-        yield path, args[1]
+        limits = [mark for mark in args[1:] if isinstance(mark, Within)]
+        yield from [(path, limits[0])] if limits else numbers(args[0], path)
     elif dataclasses.is_dataclass(hint):
         hints = typing.get_type_hints(hint, include_extras=True)
         for field in dataclasses.fields(hint):

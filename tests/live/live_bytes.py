@@ -11,12 +11,15 @@ from surefoot.components.lockstep import Lockstep
 KEYS = [key for key in TOPICS if not key.startswith("status/")]
 
 
-def local_bytes(deployment, until_s, command="forward"):
-    """Messages of each topic of a run in one process."""
+def local_bytes(deployment, until_s, command="forward", tunings=()):
+    """Messages of each topic of a run in one process, in which settings are changed at times (t, assignment)."""
     stack = Lockstep(deployment)
     heard = {key: [] for key in KEYS}
     stack.listen(lambda key, message: heard[key].append(encode(message, volatile=False)) if key in heard else None)
     stack.command(command)
+    for t, assignment in tunings:
+        stack.run(t)
+        stack.tune(assignment)
     stack.run(until_s)
     return heard
 

@@ -19,7 +19,7 @@ from surefoot.tools.commands import topics
         (["run", "flat", "--set", "hw.unit=mine.toml"], "robot file mine.toml: no such file"),
         (["restart", "io"], "io holds robot and bus"),
         (["restart", "engine"], "processes that can be: estimator"),
-        (["command", "jump"], "there are forward"),
+        (["command", "jump"], "commands are stand, sit, forward"),
         (["run", "flat", "--host", "laptop"], "network: host = 'laptop': hosts has robot"),
         (["command", "stand", "--connect", "flat"], "robot cannot be reached from another machine"),
         *(([word, "--connect", "flat"], "robot cannot be reached from") for word in ("stop", "cut", "heartbeat")),

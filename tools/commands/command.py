@@ -4,26 +4,47 @@ from __future__ import annotations
 
 import argparse
 
-from surefoot.tools.commands.bus_call import add_bus_arguments
+from surefoot.components.fsm.words import COMMANDS, MEANINGS, NoCommand, read_command
+from surefoot.tools.commands.bus_call import add_bus_arguments, open_bus
 from surefoot.tools.commands.call import CallError
-from surefoot.tools.commands.say import say_on_bus
+
+_EPILOG = """\
+exit code: 0 the robot obeys, now or when the step is over; 1 refused, or not answered; 2 the call was wrong
+
+examples: surefoot command direction 0.7 -0.7
+          surefoot command pause && surefoot command step
+"""
 
 
 def add(commands: argparse._SubParsersAction) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser("command", help="command the robot of a running stack")
-    parser.add_argument(
-        "command", help="hold, stand, sit, forward, backward, left, right, stop (the walk, and stand), damp or cut"
+    words = "\n".join(f"{word:<10} {meaning}" for word, meaning in MEANINGS.items())
+    parser = commands.add_parser(
+        "command",
+        help="command the robot of a running stack",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=f"Say one command, and print what the state machine answers.\n\n{words}",
+        epilog=_EPILOG,
     )
+    parser.add_argument("command", nargs="+", metavar="WORD", help=", ".join(COMMANDS))
     add_bus_arguments(parser)
     parser.set_defaults(run=_run)
 
 
 def _run(call: argparse.Namespace) -> int:
-    from surefoot.components.clock_messages import REQUEST
-    from surefoot.components.fsm.fsm import COMMANDS
+    from surefoot.tools.teleop.remote import Remote
 
-    if call.command not in COMMANDS:
-        raise CallError(f"unknown command {call.command!r}; there are {', '.join(COMMANDS)}")
-    say_on_bus(call, REQUEST, call.command)
-    return 0
+    words = " ".join(call.command)
+    try:
+        read_command(words)
+    except NoCommand as error:
+        raise CallError(str(error)) from None
+    session = open_bus(call)
+    try:
+        remote = Remote(session, beats=False)
+        print(f"told {session.where}: {words}", flush=True)
+        answer = remote.say(words)
+        print(answer.words if answer.taken else f"refused: {answer.words}")
+    finally:
+        session.close()
+    return 0 if answer.taken else 1

@@ -8,6 +8,7 @@ from surefoot.bus.codec import encode
 from surefoot.bus.message import Message
 from surefoot.bus.recording.journal import Journal
 from surefoot.bus.recording.writer import RecordingWriter
+from surefoot.bus.topics import TOPICS
 from surefoot.components.lockstep import Lockstep
 from surefoot.config.deployment import Deployment
 from surefoot.config.typed_toml import to_table
@@ -41,7 +42,7 @@ class LockstepRecording:
         self._writer.close()
 
     def _listen(self, key: str, message: Message) -> None:
-        if key == "operator/command":
+        if TOPICS[key].writer == "operator":
             self._operator.note_message(message.t, key, message.seq, encode(message))
         self._heard += 1
         if self._heard % _MESSAGES == 0:

@@ -1,76 +1,13 @@
 """From every state the robot sits down as it is told to, and what has been cut stays so until it is damped."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from puppet import ROBOT, Puppet
+from walker import LIE_Q, Walker
 
-from surefoot.bus.messages import ControlMode, OperatorCommand
-from surefoot.components.component import Inbox, Outbox
-from surefoot.components.fsm.fsm import Fsm
-from surefoot.config.deployment import Deployment
+from surefoot.bus.messages import ControlMode
 from surefoot.config.fsm import Fsm as Settings
 
 IN_AIR = ("SWING", "LANDING")
-LIE_Q, STAND_Q = np.tile(ROBOT.nominal.lie_q, 4), np.tile(ROBOT.nominal.stand_q, 4)
-
-
-class Walker(Puppet):
-    """The puppet with the whole state machine around its cycle; its joints are where a posture wants them.
-
-    Attributes:
-        said: events, as (kind, state, reason).
-        stiff: the joints follow no posture.
-        numb: no foot feels the ground, as of a robot on its belly.
-    """
-
-    def __init__(self, settings=None, command="forward"):
-        self.stiff = self.numb = False
-        super().__init__(settings, forward=False)
-        self.fsm = Fsm(Deployment(fsm=self.settings))
-        self.fsm._cycle, self.said, self.asked = self.cycle, [], {}
-        self.cycle._report = self.cycle._phases._report = self.fsm._report
-        self.fsm._observe = lambda t, estimate: replace(self.observe(), estimate=estimate)
-        self.inbox, self.outbox = Inbox(Fsm.inputs), Outbox(Fsm.outputs, self._hear)
-        self.reference = None
-        self.command(command)
-
-    def _hear(self, key, message):
-        if key == "fsm/reference":
-            self.reference = message
-        elif key == "fsm/event":
-            self.said.append((message.kind, message.state, message.reason))
-        else:
-            self.asked[key] = message
-
-    def observe(self):
-        now = super().observe()
-        contact = now.estimate.contact & (not self.numb)
-        return replace(now, estimate=replace(now.estimate, contact=contact))
-
-    def _answer(self, now):
-        questions = self.cycle.questions
-        questions.foothold_request = self.asked.pop("foothold/request", None)
-        questions.plan_request = self.asked.pop("trajopt/request", None)
-        super()._answer(now)
-        questions.foothold_request = questions.plan_request = None
-
-    def command(self, words):
-        self.inbox.deliver("operator/command", OperatorCommand(t=self.t, valid=True, command=words))
-
-    def step(self, now):
-        q = LIE_Q if self.stiff or self.reference is None else self.reference.joint_to
-        self.inbox.deliver("state/estimate", replace(now.estimate, q=q))
-        self.fsm.step(self.t, self.inbox, self.outbox)
-        self.inbox.clear_new()
-
-    @property
-    def state(self):
-        return self.reference.state if self.reference is not None else ""
-
-    def come_to(self, state, seconds=20.0):
-        assert self.run(seconds, lambda: self.state == state), f"{self.state}: {self.reference.reason}"
 
 
 @pytest.mark.parametrize(

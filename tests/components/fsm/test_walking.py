@@ -105,6 +105,9 @@ def test_without_a_foothold_the_leg_returns_and_the_robot_stops():
     assert stopped and "no safe foothold" in stopped[0].reason
     run.stack.run(run.stack.t + 1.5)
     assert (run.truth[-1].force_W[:, 2] > 20.0).all() and run.tilt() < 0.15
+    run.stack.command("direction -0.8 0.6")  # the operator gives a new one, and the walk goes on
+    accepted = run.until(run.stack.t + 15.0, "accepted", len(run.kinds("accepted")) + 1)
+    assert run.stack.t < 31.0 and accepted[-1].t > stopped[0].t and run.tilt() < 0.15
 
 
 def test_stop_in_mid_swing_puts_the_foot_back():
@@ -115,6 +118,26 @@ def test_stop_in_mid_swing_puts_the_foot_back():
     run.stack.run(run.stack.t + 3.0)
     assert run.references[-1].state == "STOPPED" and run.references[-1].reason == "commanded stop"
     assert (run.truth[-1].force_W[:, 2] > 20.0).all()
+
+
+def test_a_pause_in_mid_swing_finishes_the_step_and_a_skip_under_load_throws_nobody():
+    run = Run(Deployment(fsm=Fsm(probe_around=False)))
+    run.stack.run(20.0, lambda: bool(run.references) and run.references[-1].state == "DETECT_CONTACT")
+    run.stack.command("pause")
+    run.stack.run(run.stack.t + 5.0, lambda: run.references[-1].state == "STOPPED")
+    assert run.references[-1].reason == "commanded pause" and len(run.kinds("accepted")) == 1
+    run.stack.run(run.stack.t + 1.0)
+    assert (run.truth[-1].force_W[:, 2] > 20.0).all()
+    run.stack.command("resume")
+    run.stack.run(run.stack.t + 5.0, lambda: run.references[-1].state == "PROBE")
+    leg = run.references[-1].leg
+    run.stack.run(run.stack.t + 0.6)
+    assert run.truth[-1].force_W[leg, 2] > 60.0
+    run.stack.command("skip")
+    run.stack.run(run.stack.t + 1.0, lambda: run.references[-1].state == "LEG_UP")
+    assert run.truth[-1].force_W[leg, 2] < 35.0
+    accepted = run.until(run.stack.t + 6.0, "accepted", 2)
+    assert accepted[-1].leg == leg and accepted[-1].candidate == 1 and run.tilt() < 0.1
 
 
 def test_stop_while_an_alternative_is_planned_puts_the_raised_foot_back():
