@@ -7,6 +7,8 @@ else the machine does as of the code. Compare figures of one machine, or after d
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import perf_counter
 
 import numpy as np
@@ -45,14 +47,14 @@ _REAL_TIME_FACTOR = 0.6
 
 
 def bench(say: Callable[[str], None] = print) -> dict:
-    """Measure and print a table `what | asked | got`; takes about two minutes.
+    """Measure and print a table `what | asked | got`; takes about four minutes.
 
     Returns:
         `calibration_ms`; `step_ms`: median, p99 and maximum for each component; `mpc_stage_ms`: the same for
         each stage of an mpc tick; `trajopt_ms`: mean, median, maximum and number of solves; `image_ms` of the
         simulated depth camera and `map_ms` from an image to the map with it: median, p99 and maximum;
         `real_time_factor` of the whole stack; `references`: how many had a leg swing and how many one probe;
-        `bus` as of `bus_bench`; `wire` as of `wire_bench`.
+        `bus` as of `bus_bench`; `wire` as of `wire_bench`; `view` as of `view_bench`, empty without its package.
     """
     found: dict = {"calibration_ms": calibration_ms()}
     witness = _Witness()
@@ -61,6 +63,7 @@ def bench(say: Callable[[str], None] = print) -> dict:
     found |= _sight()
     found["bus"] = bus_bench()
     found["wire"] = wire_bench.wire_bench()
+    found["view"] = _view()
     _tell(found, say)
     return found
 
@@ -178,6 +181,16 @@ def _sight() -> dict:
     return {"image_ms": _spread(image_ms[1:]), "map_ms": _spread(map_ms[1:])}
 
 
+def _view() -> dict:
+    """What the view in a browser costs; nothing where its package is missing."""
+    try:
+        from surefoot.tools.view import view_bench
+    except ModuleNotFoundError:
+        return {}
+    with TemporaryDirectory(prefix="surefoot-bench-") as folder:
+        return view_bench.view_bench(Path(folder))
+
+
 def _spread(times: Iterable[float]) -> dict[str, float]:
     times = np.asarray(times)
     return {"p50": float(np.median(times)), "p99": float(np.percentile(times, 99)), "max": float(times.max())}
@@ -202,6 +215,11 @@ def _tell(found: dict, say: Callable[[str], None]) -> None:
         row(*of_bus)
     for of_wire in wire_bench.rows(found["wire"]):
         row(*of_wire)
+    if found["view"]:
+        from surefoot.tools.view import view_bench
+
+        for of_view in view_bench.rows(found["view"]):
+            row(*of_view)
     row("median, p99, max of a tick [ms]", "", "")
     for name, times in found["step_ms"].items():
         row(f"  {name}", "", spread(times))

@@ -41,12 +41,13 @@ from surefoot.tools.commands import (  # noqa: E402
     stop,
     topics,
     tune,
+    view,
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
 COMMANDS = (
     *(run, drive, command, tune, stop, cut, heartbeat),
-    *(status, restart, child, topics, keys),
+    *(status, view, restart, child, topics, keys),
     *(doctor, calibrate, service, emulator, emulated),
     *(record, info, replay),
     *(eval, press, reproduce, faults, bench, soak),

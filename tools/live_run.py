@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from rich.console import Console, Group
 from surefoot.components.real_time import refusal
 from surefoot.config.deployment import Deployment, load_deployment
 from surefoot.tools.commands.call import CallError
+from surefoot.tools.commands.view import check_view
 from surefoot.tools.doctor.check import failures
 from surefoot.tools.doctor.examination import examine_robot
 from surefoot.tools.doctor.report import as_lines
@@ -25,6 +27,7 @@ from surefoot.tools.startup.readiness import Readiness
 from surefoot.tools.status_screen import screen
 from surefoot.tools.supervisor import Supervisor
 from surefoot.tools.verdict import Verdict, verdict
+from surefoot.tools.view.view_process import ViewProcess
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,7 @@ class RunCall:
         reload: restart the processes whose source changes.
         record: write everything to this file.
         beats: the operator is at this terminal: be the heartbeat that the deployment may ask for.
+        view: port of a page that shows the run; 0 any that is free, None there is no page.
     """
 
     config: Path
@@ -48,6 +52,7 @@ class RunCall:
     reload: bool = False
     record: Path | None = None
     beats: bool = False
+    view: int | None = None
 
 
 def live_run(call: RunCall) -> int:
@@ -57,7 +62,7 @@ def live_run(call: RunCall) -> int:
         0 the goal was reached, or it was ended in time or by the user; 1 it failed.
 
     Raises:
-        CallError: `reload` in real time.
+        CallError: `reload` in real time; no view can be shown.
         RecordingError: there is no folder for the recording.
     """
     console = Console(soft_wrap=True)
@@ -86,7 +91,8 @@ def live_run(call: RunCall) -> int:
     heed()
     dialog = _dialog(deployment, console, supervisor) if guided else None
     on_screen = title if interactive else ""
-    reason, state = _supervised(supervisor, deployment, call.seconds, on_screen, dialog, console)
+    with _view(deployment, call.view) as view:
+        reason, state = _supervised(supervisor, deployment, call.seconds, on_screen, dialog, console, view)
     supervisor.note(f"{reason}. {state.advice}")
     print_summary(console, supervisor.picture, reason, state, deployment.run.log_dir)
     return 0 if state.good else 1
@@ -103,6 +109,12 @@ def _checked(call: RunCall) -> Deployment:
         )
     if call.record is not None and not deployment.network.at_hub:
         raise CallError(f"--record is for {deployment.network.hub}, the machine of io: all journals meet there")
+    if call.view is not None:
+        check_view(call.view)
+        if not deployment.network.at_hub:
+            raise CallError(
+                f"--view is for {deployment.network.hub}, the machine of io; here: surefoot view --connect"
+            )
     return deployment
 
 
@@ -110,6 +122,12 @@ def _refused_priority(deployment: Deployment) -> str:
     """Why the control chain has to go without real-time priority; empty where it has it, or none is asked."""
     run = deployment.run
     return refusal(run.realtime_priority) if run.clock == "monotonic" and run.realtime_priority else ""
+
+
+def _view(deployment: Deployment, port: int | None) -> AbstractContextManager[ViewProcess | None]:
+    if port is None:
+        return nullcontext()
+    return ViewProcess(deployment.run.namespace, port, Path(deployment.run.log_dir) / "view.log")
 
 
 def _title(name: str, deployment: Deployment) -> str:
@@ -125,12 +143,15 @@ def _supervised(
     title: str,
     dialog: Dialog | None,
     console: Console,
+    view: ViewProcess | None,
 ) -> tuple[str, Verdict]:
     """Run until it is over: why, and what that means. A `title` is that of the screen; "": line by line."""
     state = Verdict()
 
     def until(picture: Picture) -> str:
         nonlocal state
+        if view is not None and (news := view.news()):
+            supervisor.note(news)
         state = verdict(picture, deployment.terrain.kind, seconds, bool(title))
         return state.reason if state.over else ""
 

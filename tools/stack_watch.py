@@ -33,6 +33,7 @@ class StackWatch:
     """One visit to a running stack.
 
     Attributes:
+        session: on its bus.
         picture: what has been heard.
         ended: why the stack is no longer there; empty while it is.
     """
@@ -43,15 +44,15 @@ class StackWatch:
         Raises:
             BusError: no stack runs there.
         """
-        self._connect, self._session = connect, connect()
-        self.where, self.namespace = self._session.where, self._session.namespace
+        self._connect, self.session = connect, connect()
+        self.where, self.namespace = self.session.where, self.session.namespace
         self.picture, self.ended = Picture(), ""
-        self._observer = Observer(self._session, self.picture)
+        self._observer = Observer(self.session, self.picture)
         self._notice: Notice | None = None
         self._deployment: Deployment | None = None
-        self._take_notice = self._session.newest(NOTICE)
+        self._take_notice = self.session.newest(NOTICE)
         self._begun = self._served = time.monotonic()
-        self.picture.tuned = tuned_already(self._session)
+        self.picture.tuned = tuned_already(self.session)
 
     def look(self) -> None:
         """Take in what is new."""
@@ -64,7 +65,7 @@ class StackWatch:
                 self._load(self._notice)
         heard = max(self._begun, *(watched.heard for watched in self.picture.processes.values()))
         if time.monotonic() - max(heard, self._served) > _GONE_S and not self._is_served():
-            here = self._session.beside_hub
+            here = self.session.beside_hub
             silent = "io has ended and said no reason" if here else f"{self.where} does not answer any more"
             self.ended = self.picture.ending or silent
 
@@ -77,7 +78,7 @@ class StackWatch:
 
     def close(self) -> None:
         """End the visit."""
-        self._session.close()
+        self.session.close()
 
     @property
     def healthy(self) -> bool:
@@ -120,7 +121,7 @@ class StackWatch:
 
     def _is_served(self) -> bool:
         """Whether a hub listens; on this machine also one that is stopped."""
-        if self._session.beside_hub:
+        if self.session.beside_hub:
             served = hub_owner(self.namespace) != ""
         else:
             served = _answers(self._connect)
@@ -134,7 +135,7 @@ class StackWatch:
         except ConfigError:
             return  # the file has changed since, or lies on another machine
         self.picture.simulated = self._deployment.run.clock == "simulated"
-        if not self._session.beside_hub:
+        if not self.session.beside_hub:
             for name, watched in self.picture.processes.items():
                 watched.host = self._deployment.network.host_of(name)
         self._observer.margin = SupportMargin(self._deployment.load_robot())

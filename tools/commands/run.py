@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from surefoot.tools.commands.call import deployment_file
+from surefoot.tools.commands.view import PORT
 
 _RUN = """\
 Start every process of a deployment and show how it goes, on one screen.
@@ -34,6 +35,8 @@ import the changed file, once it compiles; one that fails with the new source wa
 `surefoot stop` lets the robot sit down and be damped, `surefoot cut` takes its torque away; the run stays up.
 
 --record OUT.mcap writes all that is published and what every step has read: see `surefoot info` and `replay`.
+
+--view shows the run in a browser, from a process of its own: see `surefoot view`.
 
 With --host NAME it starts what network.hosts gives that machine, and connects to the robot's. Start the robot's
 machine and this one in any order within a minute; each part ends by itself or with Ctrl-C.
@@ -65,12 +68,17 @@ def add(commands: argparse._SubParsersAction) -> None:
         "--beat", action="store_true", help="be the operator's heartbeat, where operator.heartbeat_s asks for one"
     )
     parser.add_argument("--record", type=Path, metavar="OUT.mcap", help="record everything that is published")
+    parser.add_argument("--view", action="store_true", help="show the run in a browser")
+    parser.add_argument(
+        "--view-port", type=int, metavar="PORT", help=f"of the view's page; 0 any that is free; default {PORT}"
+    )
     parser.set_defaults(run=_run)
 
 
 def _run(call: argparse.Namespace) -> int:
     from surefoot.tools.live_run import RunCall, live_run
 
+    port = PORT if call.view_port is None else call.view_port
     host = [f"network.host={call.host}"] if call.host else []
     return live_run(
         RunCall(
@@ -81,5 +89,6 @@ def _run(call: argparse.Namespace) -> int:
             reload=call.reload,
             record=call.record,
             beats=call.beat,
+            view=port if call.view or call.view_port is not None else None,
         )
     )
