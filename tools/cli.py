@@ -24,13 +24,16 @@ from surefoot.tools.commands import (  # noqa: E402
     emulated,
     emulator,
     eval,
+    export,
     faults,
     heartbeat,
     info,
     keys,
+    plot,
     press,
     record,
     replay,
+    report,
     reproduce,
     restart,
     run,
@@ -39,6 +42,7 @@ from surefoot.tools.commands import (  # noqa: E402
     status,
     stop,
     topics,
+    video,
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
 
@@ -47,6 +51,7 @@ COMMANDS = (
     *(status, restart, child, topics, keys),
     *(doctor, calibrate, service, emulator, emulated),
     *(record, info, replay),
+    *(plot, report, video, export),
     *(eval, press, reproduce, faults, bench, soak),
 )
 """In the order of the help."""
