@@ -50,8 +50,6 @@ def contents(
         raise NotRecorded(
             f"{recording.path}: nothing from {begin_s:g} to {end_s:g} s; it is of {begin:.3f} to {end:.3f} s"
         )
-    if wanted:
-        return Contents(tuple(wanted), (), begin_s, end_s)
-    left_out = () if bulky else tuple(key for key in recording if key in BULKY)
-    keys = tuple(key for key in recording if key not in left_out)
+    left_out = () if bulky or wanted else tuple(key for key in recording if key in BULKY)
+    keys = tuple(wanted) or tuple(key for key in recording if key not in left_out)
     return Contents(keys, left_out, max(begin_s, begin), min(end_s, end))

@@ -33,6 +33,6 @@ def mjcf(robot: Robot) -> str:
         motor.ctrlrange, motor.ctrllimited = [-limit, limit], mujoco.mjtLimited.mjLIMITED_TRUE
     height = robot.nominal.leg_height - robot.legs["FL"].hip_p_B[2]
     posture = np.tile(robot.nominal.stand_q, len(LEGS))
-    spec.add_key(name=STAND, qpos=[0.0, 0.0, height + robot.foot.radius, 1.0, 0.0, 0.0, 0.0, *posture])
+    spec.add_key(name=STAND, qpos=[0.0, 0.0, height, 1.0, 0.0, 0.0, 0.0, *posture])
     spec.compile()
     return spec.to_xml()

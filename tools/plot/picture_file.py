@@ -13,6 +13,8 @@ from surefoot.tools.reproduce.plots import Figure, save, styled
 ENDINGS = (".png", ".svg", ".html")
 
 _DPI = 150
+_UNTOLD = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+"""Of a figure inside a page: it would only link to who defines such words."""
 
 
 def check_ending(out: Path) -> None:
@@ -42,6 +44,6 @@ def inline_svg(figure: Figure, label: str) -> str:
     """The figure as an element of a page, which a browser scales and prints sharply."""
     text = io.StringIO()
     with styled():
-        figure.savefig(text, format="svg", metadata={"Date": None})
+        figure.savefig(text, format="svg", metadata=_UNTOLD)
     _, _, svg = text.getvalue().partition("<svg ")
     return f'<div class="wide"><svg role="img" aria-label="{escape(label)}" {svg}</div>'
