@@ -167,7 +167,8 @@ class RecordingIndex:
                 self.damage = "it ends in the middle of a record"
                 break
             if kind == Opcode.CHUNK:
-                seen.parts.append(Part(at, *_SPAN.unpack(file.read(_SPAN.size)), set()))
+                first_ns, last_ns = _SPAN.unpack(file.read(_SPAN.size))
+                seen.parts.append(Part(at, first_ns, last_ns, set()))
             elif kind == Opcode.MESSAGE_INDEX and seen.parts:
                 channel, entries = _INDEX.unpack(file.read(_INDEX.size))
                 self._note(file, seen, channel, entries // _ENTRY_BYTES)

@@ -54,7 +54,9 @@ def to_json(message: Message) -> bytes:
 def _value(value: Any, finite: bool) -> Any:
     if isinstance(value, np.ndarray):
         if not finite and not np.isfinite(value).all():
-            return np.where(np.isfinite(value), value, None).tolist()
+            told = value.astype(object)
+            told[~np.isfinite(value)] = None
+            return told.tolist()
         return value.tolist()
     if isinstance(value, float) and not np.isfinite(value):
         return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -46,7 +47,7 @@ def draw_curves(axes: Axes, recording: RecordingTables, probes: Sequence[Probe])
         color = f"C{number}" if few and outcome == "held" else _COLORS.get(outcome, "#777777")
         bold = few or outcome == "gave way"
         moved_m, force_n = (_smoothed(each, estimate) for each in curve(estimate, reference, probe.leg, press))
-        look = {"linewidth": 1.6, "zorder": 3} if bold else {"linewidth": 0.8, "alpha": 0.75}
+        look: Any = {"linewidth": 1.6, "zorder": 3} if bold else {"linewidth": 0.8, "alpha": 0.75}
         axes.plot(1e3 * moved_m, force_n, color=color, label=None if label in labelled else label, **look)
         labelled.add(label)
     limit_mm = 1e3 * recording.deployment.fsm.collapse_m

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from surefoot.config.robot import LEGS
@@ -63,8 +65,15 @@ def _draw_verdict(axes: Axes, probes: list[Probe], verdict: str) -> None:
     if not probes:
         return
     points = np.array([probe.p_WF[:2] for probe in probes])
-    look = {"color": COLORS[verdict], "markeredgecolor": "white", "markersize": 8, "zorder": 3}
+    look: Any = {"color": COLORS[verdict], "markeredgecolor": "white", "markersize": 8, "zorder": 3}
     axes.plot(points[:, 0], points[:, 1], MARKS[verdict], linestyle="", label=f"{verdict} ({len(points)})", **look)
     for probe in probes:
         candidate = f"{LEGS[probe.leg]}{probe.candidate or ''}"
-        axes.annotate(candidate, probe.p_WF[:2], xytext=(6, 3), textcoords="offset points", fontsize=7.0, zorder=4)
+        axes.annotate(
+            candidate,
+            (probe.p_WF[0], probe.p_WF[1]),
+            xytext=(6, 3),
+            textcoords="offset points",
+            fontsize=7.0,
+            zorder=4,
+        )

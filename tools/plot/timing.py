@@ -68,7 +68,7 @@ def _histograms(axes: Axes, shown: Sequence[tuple[np.ndarray, str, str]]) -> Non
     every = np.maximum(np.concatenate([ms for ms, _, _ in shown]), _LEAST_MS)
     if not len(every):
         return
-    bins = np.geomspace(0.8 * every.min(), 1.25 * every.max(), _BINS)
+    bins = np.geomspace(0.8 * every.min(), 1.25 * every.max(), _BINS).tolist()
     for ms, label, color in shown:
         axes.hist(np.maximum(ms, _LEAST_MS), bins, histtype="stepfilled", color=color, alpha=0.5, label=label)
 

@@ -78,7 +78,7 @@ def _fixed(spec: FieldSpec, values: list[bytes | None]) -> np.ndarray:
 
 def _open(spec: FieldSpec, values: list[list | None]) -> np.ndarray:
     dtype = np.dtype(spec.dtype).newbyteorder("<")
-    blank = [[max(n, 0) for n in spec.shape], b""]
+    blank: list[Any] = [[max(n, 0) for n in spec.shape], b""]
     told = [blank if value is None else value for value in values]
     shapes = {tuple(shape) for shape, _ in told}
     if len(shapes) == 1:

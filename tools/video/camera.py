@@ -11,11 +11,11 @@ from surefoot.tools.plot.verdict_looks import COLORS
 from surefoot.tools.video.scenes import Instant
 
 _MOST_GEOMS = 20_000
-_AZIMUTH, _ELEVATION, _DISTANCE_M = 62.0, -20.0, 1.9
+_AZIMUTH, _ELEVATION, _DISTANCE_M = 62.0, -22.0, 1.7
 _AHEAD_M, _LOOKAT_Z = 0.1, 0.12
-_ARROW_M_PER_N, _ARROW_WIDTH_M = 0.0016, 0.009
+_ARROW_M_PER_N, _ARROW_WIDTH_M = 0.003, 0.011
 _LEAST_N = 5.0  # a force that is worth an arrow
-_MARK_M = 0.022
+_MARK_M = 0.036
 _ROBOT_QPOS = 19  # trunk position and quaternion, twelve joints
 _CARRIES, _TURN = (0.20, 0.45, 0.85, 0.9), (0.95, 0.50, 0.05, 0.95)
 
@@ -90,7 +90,7 @@ class Camera:
         color = COLORS[verdict]
         rgba = tuple(int(color[at : at + 2], 16) / 255.0 for at in (1, 3, 5))
         geom = self._next(mujoco.mjtGeom.mjGEOM_CYLINDER, (*rgba, 0.85))
-        geom.size[:] = (_MARK_M, _MARK_M, 0.0015)
+        geom.size[:] = (_MARK_M, _MARK_M, 0.002)
         geom.pos[:] = place_W - [0.0, 0.0, self._foot_m - 0.002]
 
     def _next(self, kind: int, rgba: tuple[float, ...]) -> mujoco.MjvGeom:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,9 +72,10 @@ class Scenes:
     def __len__(self) -> int:
         return len(self._t)
 
+    def __iter__(self) -> Iterator[Instant]:
+        return (self[number] for number in range(len(self)))
+
     def __getitem__(self, number: int) -> Instant:
-        if number >= len(self):
-            raise IndexError(number)
         t, row, seen = float(self._t[number]), self._rows[number], self._seen
         terrain = seen["terrain_q"][row] if self.true else np.zeros(0)
         state, leg = self._machine(t)
@@ -100,10 +102,11 @@ class Scenes:
         return str(self._reference["state"][row]), int(self._reference["leg"][row])
 
     def _place(self, probe: Probe) -> np.ndarray:
-        """Where the foot was when it was judged, in what is shown; before that, where it was estimated."""
-        if not self._seen.t[0] <= probe.end_t <= self._seen.t[-1]:
+        """Where the foot met the ground, in what is shown; where that is not in it, where it was estimated."""
+        met_t = probe.end_t if np.isnan(probe.contact_t) else probe.contact_t
+        if not self._seen.t[0] <= met_t <= self._seen.t[-1]:
             return probe.p_WF
-        (row,) = self._seen.at(np.array([probe.end_t]))
+        (row,) = self._seen.at(np.array([met_t]))
         return self._seen["p_WF"][row, probe.leg]
 
 

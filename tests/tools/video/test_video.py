@@ -45,7 +45,7 @@ def test_without_truth_the_estimate_is_shown():
         np.testing.assert_array_equal(instant.qpos, expected)
         np.testing.assert_array_equal(instant.force_W, estimate["force_W"][row])
         assert ("shown", "estimate") in instant.lines
-    assert [dict(instant.lines)["state"] for instant in shown][0::5] == ["PROBE", "MOVE"]
+    assert [dict(instant.lines)["state"] for instant in shown][0::5] == ["PROBE", "OPT"]
     assert shown[0].leg == 1 and shown[0].verdicts == () and shown[2].verdicts[0][1] == "collapse"
 
 
@@ -112,8 +112,8 @@ def test_without_an_encoder_the_remedy_is_named(tmp_path, monkeypatch, capsys):
     ("words", "told"),
     [
         (["--size", "big"], "--size big: want WIDTHxHEIGHT"),
-        (["--size", "641x480"], "width 641: an even number of pixels"),
-        (["--size", "640x9000"], "height 9000: an even number of pixels"),
+        (["--size", "641x480"], "width 641: an even number from 64 to 3840 pixels"),
+        (["--size", "640x9000"], "height 9000: an even number"),
         (["--speed", "0"], "--speed 0: allowed 0.01 to 100"),
         (["--fps", "0"], "--fps 0: allowed 1 to 120"),
         (["--from", "99"], "nothing from 99 to inf s; it is of 21.202 to 23.940 s"),
