@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import struct
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -31,6 +31,7 @@ _SPAN, _INDEX = struct.Struct("<QQ"), struct.Struct("<HI")
 
 _ENTRY_BYTES = 16  # of an index: a time and a place
 _MAGIC_BYTES = 8
+_ALL = range(1 << 16)  # channels that a file can have
 
 
 @dataclass(frozen=True)
@@ -128,8 +129,8 @@ class RecordingIndex:
                     begin = part.first_ns / 1e9
                     self.damage = f"it cannot be read from {begin:.3f} s on ({type(error).__name__}: {error})"
                     return
-                for channel, seq, t_ns, payload in _messages(data):
-                    if channel in wanted and first_ns <= t_ns <= last_ns:
+                for _, seq, t_ns, payload in _messages(data, wanted):
+                    if first_ns <= t_ns <= last_ns:
                         yield Recorded(key, t_ns, seq, payload)
 
     # How it is found ------------------------------------------------------------------------------------
@@ -189,7 +190,7 @@ class RecordingIndex:
         """The last part may have lost the end of its index."""
         last = seen.parts[-1]
         try:
-            found = Counter(channel for channel, *_ in _messages(_unpacked(file, last)))
+            found = Counter(channel for channel, *_ in _messages(_unpacked(file, last), _ALL))
         except Exception:  # as when reading: there it is told
             return
         for channel in found.keys() - last.channels:
@@ -206,13 +207,14 @@ def _unpacked(file: BinaryIO, part: Part) -> bytes:
     return stream.read(size)
 
 
-def _messages(data: bytes) -> Iterator[tuple[int, int, int, bytes]]:
-    """Channel, number, time [ns] and bytes of each message in an unpacked part."""
+def _messages(data: bytes, wanted: Collection[int]) -> Iterator[tuple[int, int, int, bytes]]:
+    """Channel, number, time [ns] and bytes of each message of some channels in an unpacked part."""
     at = 0
     while at < len(data):
         kind, length = _HEAD.unpack_from(data, at)
         at += _HEAD.size
         if kind == Opcode.MESSAGE:
             channel, seq, t_ns, _ = _MESSAGE.unpack_from(data, at)
-            yield channel, seq, t_ns, data[at + _MESSAGE.size : at + length]
+            if channel in wanted:
+                yield channel, seq, t_ns, data[at + _MESSAGE.size : at + length]
         at += length
