@@ -15,6 +15,9 @@ HEAD = (
     "in the machine's words",
 )  # fmt: skip
 
+_UNBROKEN = "\u00a0"
+"""A space at which no line ends."""
+
 
 def probe_table(probes: Sequence[Probe]) -> Table:
     """One row a candidate that a foot was set on."""
@@ -27,12 +30,12 @@ def probe_table(probes: Sequence[Probe]) -> Table:
 
 def _row(probe: Probe) -> list[str]:
     x, y, _ = probe.p_WF.tolist()
-    where = f"{x:.2f}, {y:.2f}" if np.isfinite(x) else "–"
+    where = f"{x:.2f},{_UNBROKEN}{y:.2f}" if np.isfinite(x) else "–"
     return [
         str(probe.number),
         f"{probe.begin_t:.1f}",
         LEGS[probe.leg],
-        probe.where,
+        probe.where.replace(" ", _UNBROKEN),
         where,
         str(len(probe.presses)),
         f"{probe.held_n:.0f}" if probe.held_n else "–",
