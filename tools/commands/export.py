@@ -18,7 +18,8 @@ def add(commands: argparse._SubParsersAction) -> None:
         help="write a recording for Foxglove, PlotJuggler or a spreadsheet, or its robot as URDF or MJCF",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description="Writes a recording in another format:\n\n"
-        "  json-mcap  one MCAP file with messages in JSON: Foxglove and PlotJuggler open it\n"
+        "  json-mcap  one MCAP file with messages in JSON: Foxglove and PlotJuggler open it; without --topics\n"
+        "             the robot in three dimensions is in it too\n"
         "  csv        a folder with one file a topic, and columns.csv, which says what they hold\n"
         "  parquet    the same, smaller, and with the fields of open length\n"
         "  urdf       the robot's description\n"

@@ -20,12 +20,14 @@ class Contents:
         keys: of the topics.
         left_out: topics that are there, and are exported only when they are named.
         begin_s, end_s: of the run's clock.
+        scene: the robot in three dimensions is wanted too, where the format has room for it.
     """
 
     keys: tuple[str, ...]
     left_out: tuple[str, ...]
     begin_s: float
     end_s: float
+    scene: bool = False
 
 
 def contents(
@@ -52,4 +54,5 @@ def contents(
         )
     left_out = () if bulky or wanted else tuple(key for key in recording if key in BULKY)
     keys = tuple(wanted) or tuple(key for key in recording if key not in left_out)
-    return Contents(keys, left_out, max(begin_s, begin), min(end_s, end))
+    scene = not wanted and bool({"sim/truth", "state/estimate"} & set(recording))
+    return Contents(keys, left_out, max(begin_s, begin), min(end_s, end), scene)

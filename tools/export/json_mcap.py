@@ -14,6 +14,7 @@ from surefoot.bus.message import Message, specs
 from surefoot.bus.recording.json_schema import plain_json_schema
 from surefoot.bus.topics import TOPICS
 from surefoot.tools.export.contents import Contents
+from surefoot.tools.export.foxglove_scene import SCHEMA_NAME, TOPIC, scene_schema, scene_updates
 from surefoot.tools.tables.recording_tables import RecordingTables
 
 _WINDOW_S = 5.0  # of the recording in memory at once
@@ -21,7 +22,7 @@ _NS = 1e-9  # between two windows
 
 
 def write_json_mcap(recording: RecordingTables, wanted: Contents, out: Path) -> int:
-    """Write the chosen topics in the order of their times; returns how many messages.
+    """Write the chosen topics in the order of their times, the scene before them; returns how many messages.
 
     Raises:
         OSError: it cannot be written.
@@ -32,6 +33,7 @@ def write_json_mcap(recording: RecordingTables, wanted: Contents, out: Path) -> 
         writer.start("", "surefoot export")
         writer.add_metadata("surefoot-export", recording.versions | {"config": json.dumps(recording.config)})
         channels = {key: _channel(writer, key) for key in wanted.keys}
+        count += _write_scene(writer, recording, wanted) if wanted.scene else 0
         begin_s = wanted.begin_s
         while begin_s <= wanted.end_s:
             end_s = min(begin_s + _WINDOW_S - _NS, wanted.end_s)
@@ -61,6 +63,16 @@ def _value(value: Any, finite: bool) -> Any:
     if isinstance(value, float) and not np.isfinite(value):
         return None
     return value
+
+
+def _write_scene(writer: Writer, recording: RecordingTables, wanted: Contents) -> int:
+    schema = writer.register_schema(SCHEMA_NAME, SchemaEncoding.JSONSchema, scene_schema())
+    channel = writer.register_channel(TOPIC, MessageEncoding.JSON, schema)
+    count = 0
+    for t_ns, update in scene_updates(recording, wanted.begin_s, wanted.end_s):
+        writer.add_message(channel, t_ns, update, t_ns, count)
+        count += 1
+    return count
 
 
 def _channel(writer: Writer, key: str) -> int:

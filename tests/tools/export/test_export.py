@@ -57,6 +57,7 @@ def test_every_message_is_there_as_json(tmp_path, name):
             assert (channel.message_encoding, schema.encoding) == ("json", "jsonschema")
             told.setdefault(channel.topic, []).append((message.log_time, json.loads(message.data)))
     assert {"state/estimate", "fsm/reference", "fsm/event"} <= told.keys() and "mpc/policy" not in told
+    assert "scene" in told and told.pop("scene")
     for key, messages in told.items():
         expected = decoded(key, name)
         assert len(messages) == len(expected)
