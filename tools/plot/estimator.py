@@ -14,6 +14,7 @@ from surefoot.tools.tables.table import NotRecorded, Table
 
 _AXES = ("x", "y", "z")
 _MOST = 4_000  # points of a line that a picture can show
+_HEADROOM = 0.28  # of a panel, for its legend
 _FIELDS = ("p_WB", "quat_WB", "v_WB_W", "force_W")
 
 
@@ -41,7 +42,8 @@ def estimator(recording: RecordingTables, choice: Choice) -> Figure:
         panels[-1].set_title(
             f"vertical force on {LEGS[choice.leg]}, N: RMS difference {rmse(told_n, true_n):.1f} N"
         )
-        panels[-1].legend(loc="upper right", ncols=2)
+        panels[-1].margins(y=_HEADROOM)
+        panels[-1].legend(loc="upper left", ncols=2)
     panels[-1].set_xlabel("time s")
     return figure
 
@@ -82,4 +84,5 @@ def _error_panel(axes: Axes, t: np.ndarray, error: np.ndarray, title: str) -> No
         axes.plot(t, error[:, column], color=color, linewidth=1.0, label=f"{name}, at most {worst:.3g}")
     axes.axhline(0.0, color="#888888", linewidth=0.8)
     axes.set_title(title)
+    axes.margins(y=_HEADROOM)
     axes.legend(loc="upper left", ncols=3)

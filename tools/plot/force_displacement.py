@@ -54,7 +54,7 @@ def draw_curves(axes: Axes, recording: RecordingTables, probes: Sequence[Probe])
     axes.axvline(limit_mm, color="#555555", linestyle=":", label=f"a collapse, {limit_mm:.0f} mm")
     axes.set(title="Force against displacement", xlabel="displacement of the foot mm", ylabel="normal force N")
     axes.set_xlim(left=0.0)
-    axes.legend(loc="lower right", fontsize=8.0)
+    axes.legend(loc="best", fontsize=8.0)
 
 
 def _outcome(probe: Probe, press: Press) -> str:

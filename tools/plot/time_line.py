@@ -74,11 +74,12 @@ def time_line(recording: RecordingTables, choice: Choice) -> Figure:
     length = max(end - begin, 1e-3) / lines
     figure = new_figure(10.0, 0.9 + 0.95 * lines)
     rows = figure.subplots(lines, 1, squeeze=False)[:, 0]
-    events = [event for _, event in recording.messages(["fsm/event"], begin, end)]
+    told = [event for _, event in recording.messages(["fsm/event"], begin, end) if isinstance(event, FsmEvent)]
+    events = [event for event in told if choice.leg in (-1, event.leg)]
     for number, axes in enumerate(rows):
         first = begin + number * length
         state_row(axes, found)
-        _mark(axes, [event for event in events if isinstance(event, FsmEvent)])
+        _mark(axes, events)
         axes.set_xlim(first, first + length)
     rows[-1].set_xlabel("time s")
     _legend(figure, rows[0], found)

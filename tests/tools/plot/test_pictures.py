@@ -90,6 +90,18 @@ def test_states_follow_one_another():
     assert found[0].leg == found[1].leg == 2 and found[-1].leg == 0 and found[-1].reason == "base shift for FL"
 
 
+def test_a_leg_has_its_own_verdicts():
+    recording = load(COLLAPSE)
+    marks = {
+        leg: [each for each in draw(recording, "states", Choice(leg)).axes[0].lines if each.get_marker() == "X"]
+        for leg in (-1, 1)
+    }
+    (at,) = [each.get_xdata()[0] for each in marks[1] if len(each.get_xdata())]
+    assert at == pytest.approx(23.18) and len(marks[-1]) == len(marks[1])
+    with pytest.raises(NotRecorded, match="RL is never moved in it"):
+        draw(recording, "states", Choice(leg=2))
+
+
 def test_the_error_of_the_estimate_is_its_distance_from_the_truth(tmp_path):
     recording = load(with_truth(tmp_path / "a.mcap"))
     position, turned, *_ = draw(recording, "estimator", Choice(leg=1)).axes
