@@ -25,13 +25,16 @@ from surefoot.tools.commands import (  # noqa: E402
     emulated,
     emulator,
     eval,
+    export,
     faults,
     heartbeat,
     info,
     keys,
+    plot,
     press,
     record,
     replay,
+    report,
     reproduce,
     restart,
     run,
@@ -41,6 +44,7 @@ from surefoot.tools.commands import (  # noqa: E402
     stop,
     topics,
     tune,
+    video,
     view,
 )
 from surefoot.tools.commands.call import CallError  # noqa: E402
@@ -50,6 +54,7 @@ COMMANDS = (
     *(status, view, restart, child, topics, keys),
     *(doctor, calibrate, service, emulator, emulated),
     *(record, info, replay),
+    *(plot, report, video, export),
     *(eval, press, reproduce, faults, bench, soak),
 )
 """In the order of the help."""

@@ -188,7 +188,10 @@ class SupportMargin:
         """[m], positive inside; None while no leg is moved or probed."""
         if reference.leg < 0:
             return None
-        w, x, y, z = estimate.quat_WB
-        q = np.concatenate([estimate.p_WB, [x, y, z, w], estimate.q])
-        com_W = pin.centerOfMass(self._model, self._data, q)
+        com_W = self.com(estimate.p_WB, estimate.quat_WB, estimate.q)
         return SupportTriangle(reference.p_WF, reference.leg).margin(com_W[:2])
+
+    def com(self, p_WB: np.ndarray, quat_WB: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """(3,) centre of mass in the world [m]; of the trunk's place, quaternion (w, x, y, z) and joint angles."""
+        w, x, y, z = quat_WB
+        return pin.centerOfMass(self._model, self._data, np.concatenate([p_WB, [x, y, z, w], q])).copy()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 from surefoot.bus.message import FieldSpec, Message, specs
@@ -17,7 +18,15 @@ def json_schema(cls: type[Message]) -> bytes:
     field is a list of the real shape and the bytes).
     """
     properties: dict[str, Any] = {"message": {"const": cls.__name__}}
-    properties |= {name: _field(spec) for name, spec in specs(cls).items()}
+    return _schema(cls, properties | {name: _field(spec, _array) for name, spec in specs(cls).items()})
+
+
+def plain_json_schema(cls: type[Message]) -> bytes:
+    """The schema of a message as plain JSON, its arrays as lists of lists."""
+    return _schema(cls, {name: _field(spec, _lists) for name, spec in specs(cls).items()})
+
+
+def _schema(cls: type[Message], properties: dict[str, Any]) -> bytes:
     schema = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": cls.__name__,
@@ -28,9 +37,9 @@ def json_schema(cls: type[Message]) -> bytes:
     return json.dumps(schema, indent=1).encode()
 
 
-def _field(spec: FieldSpec) -> dict[str, Any]:
+def _field(spec: FieldSpec, array: Callable[[FieldSpec], dict[str, Any]]) -> dict[str, Any]:
     if spec.kind == "array":
-        return _array(spec)
+        return array(spec)
     entry: dict[str, Any] = {"type": "array", "items": {"type": "string"}}
     if spec.kind != "names":
         entry = {"type": _JSON_TYPE[spec.kind]}
@@ -44,6 +53,16 @@ def _array(spec: FieldSpec) -> dict[str, Any]:
         shape = {"type": "array", "items": {"type": "integer"}}
         return {"type": "array", "prefixItems": [shape, raw], "items": False} | facts
     return raw | facts
+
+
+def _lists(spec: FieldSpec) -> dict[str, Any]:
+    of = {"bool": "boolean", "int64": "integer", "uint8": "integer"}.get(spec.dtype, "number")
+    entry: dict[str, Any] = {"type": of}
+    for length in reversed(spec.shape):
+        entry = {"type": "array", "items": entry}
+        if length >= 0:
+            entry |= {"minItems": length, "maxItems": length}
+    return entry | _words(spec)
 
 
 def _words(spec: FieldSpec) -> dict[str, str]:

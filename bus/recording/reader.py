@@ -80,7 +80,7 @@ class Recording:
                 channels[record.id] = record
             elif isinstance(record, Metadata) and record.name == BATCH:
                 try:
-                    self.journals.append({name: json.loads(value) for name, value in record.metadata.items()})
+                    self.journals.append(journal_end(record))
                 except ValueError:
                     self.damage = "what it says of its journals cannot be read"
                     return
@@ -100,3 +100,12 @@ class Recording:
             raise RecordingError(f"{self.path} is a folder, not a recording") from None
         except Exception as error:  # whatever a parser or a decompressor says of half a record
             self.damage = f"it ends in the middle of a record ({type(error).__name__}: {error})"
+
+
+def journal_end(record: Metadata) -> dict[str, Any]:
+    """How far one start of a process noted what it did, and whether its journal has an end.
+
+    Raises:
+        ValueError: it is no record of that.
+    """
+    return {name: json.loads(value) for name, value in record.metadata.items()}

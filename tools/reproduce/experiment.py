@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from surefoot.config.reproduce import Reproduce
+from surefoot.tools.document import Part, Pictures, Table
 from surefoot.tools.reproduce.recorded_run import RecordedRun, by_arm
 from surefoot.tools.reproduce.run_spec import RunSpec
 from surefoot.tools.reproduce.snapshots import Darkroom, Shot
@@ -29,42 +30,6 @@ class Plan:
     def seeds_or(self, own: Sequence[int]) -> tuple[int, ...]:
         """The seeds that were asked for, each once; or an experiment's own, in the quick version one."""
         return tuple(dict.fromkeys(self.seeds)) or tuple(own[:1] if self.quick else own)
-
-
-@dataclass(frozen=True)
-class Words:
-    """A paragraph."""
-
-    text: str
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table of text; the first column names its row."""
-
-    caption: str
-    head: Sequence[str]
-    rows: Sequence[Sequence[str]]
-
-
-@dataclass(frozen=True)
-class Pictures:
-    """One or more pictures in a row.
-
-    Attributes:
-        caption: of them all.
-        files: SVG, PNG or JPEG.
-        labels: of each, also read to who cannot see it.
-        missing: why there are none.
-    """
-
-    caption: str
-    files: Sequence[Path]
-    labels: Sequence[str]
-    missing: str = ""
-
-
-Part = Words | Table | Pictures
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from surefoot.config.robot import LEGS
-from surefoot.tools.reproduce.experiment import Evidence, Experiment, Part, Pictures, Plan, Table, Words
-from surefoot.tools.reproduce.plots import force_panel, new_figure, normal_component, rmse, save, styled
+from surefoot.tools.document import Part, Pictures, Table, Words
+from surefoot.tools.reproduce.experiment import Evidence, Experiment, Plan
+from surefoot.tools.reproduce.plots import Figure, force_panel, new_figure, normal_component, rmse, save, styled
 from surefoot.tools.reproduce.recording.forces import FORCES
 from surefoot.tools.reproduce.run_spec import RunSpec
 
@@ -45,6 +46,20 @@ def errors(series: dict[str, np.ndarray]) -> dict[str, float]:
     return {f"{first} / {second}": rmse(normal[first], normal[second]) for first, second in pairs}
 
 
+def tracking(columns: Sequence[tuple[str, dict[str, np.ndarray], np.ndarray]]) -> Figure:
+    """Normal, x and y over the time from contact, a column for each probe: its name, series, and rows of that."""
+    figure = new_figure(max(3.0 * len(columns) + 0.4, 5.6), 6.2)
+    grid = figure.subplots(3, len(columns), squeeze=False, sharey="row")
+    for number, (name, series, rows) in enumerate(columns):
+        t = series["t"][rows] - series["t"][rows[0]]
+        parts = components(series, rows, ("true", "asked", "mpc", "estimated"))
+        for axes, values, title in zip(grid[:, number], parts, (f"{name}, normal", "x", "y"), strict=True):
+            force_panel(axes, t, values, title)
+    handles, labels = grid[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=min(2 * len(columns), 4))
+    return figure
+
+
 def report(evidence: Evidence) -> list[Part]:
     """The first probe of each leg, and the differences over all of them."""
     series = [run.arrays("forces") for run in evidence.runs]
@@ -68,18 +83,8 @@ def report(evidence: Evidence) -> list[Part]:
     if not probes:
         return [Words("No probe was reached in this run."), table]
     with styled():
-        figure = new_figure(3.0 * len(probes) + 0.4, 6.2)
-        grid = figure.subplots(3, len(probes), squeeze=False, sharey="row")
-        for column, shown in enumerate(probes):
-            t = first["t"][shown] - first["t"][shown[0]]
-            leg = LEGS[first["leg"][shown[0]]]
-            titles = (f"{leg}, normal", "x", "y")
-            parts = components(first, shown, ("true", "asked", "mpc", "estimated"))
-            for axes, values, title in zip(grid[:, column], parts, titles, strict=True):
-                force_panel(axes, t, values, title)
-        handles, labels = grid[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper center", ncols=4)
-        path = save(figure, evidence.folder / "forces.svg")
+        columns = [(LEGS[first["leg"][shown[0]]], first, shown) for shown in probes]
+        path = save(tracking(columns), evidence.folder / "forces.svg")
     caption = (
         f"Seed {evidence.runs[0].spec.seed}: the first probe of each leg. Time from contact; six forces of 100 ms "
         "follow the 0.12 s in which the base leans towards the foot, then the foot is unloaded."

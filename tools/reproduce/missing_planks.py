@@ -11,17 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from surefoot.config.robot import LEGS
+from surefoot.tools.document import Part, Pictures, Words
 from surefoot.tools.evaluation.one_run import LIMIT_S
-from surefoot.tools.reproduce.experiment import (
-    Evidence,
-    Experiment,
-    Part,
-    Pictures,
-    Plan,
-    Words,
-    crossing_table,
-    per_foothold,
-)
+from surefoot.tools.reproduce.experiment import Evidence, Experiment, Plan, crossing_table, per_foothold
 from surefoot.tools.reproduce.plots import ASKED, DARK, MPC, new_figure, save, styled
 from surefoot.tools.reproduce.recorded_run import RecordedRun
 from surefoot.tools.reproduce.recording.map_views import hole_cells

@@ -58,7 +58,7 @@ def save(figure: Figure, path: Path) -> Path:
 
 
 def force_panel(axes: Axes, t: np.ndarray, values: dict[str, np.ndarray], title: str) -> None:
-    """One force component over time: every given one of asked, mpc, estimated, true (n,) [N]."""
+    """One force component over time: every given one of asked, mpc, estimated, true (n,) [N] that was told."""
     looks = {
         "true": ("true (simulator)", TRUE, "-", 0.9),
         "asked": ("envelope, asked", ASKED, "-", 2.4),
@@ -66,7 +66,7 @@ def force_panel(axes: Axes, t: np.ndarray, values: dict[str, np.ndarray], title:
         "estimated": ("estimated, eq. (7)", ESTIMATED, "--", 1.2),
     }
     for name, (label, color, line, width) in looks.items():
-        if name in values:
+        if name in values and np.isfinite(values[name]).any():
             axes.plot(t, values[name], color=color, linestyle=line, linewidth=width, label=label)
     axes.set_title(title)
     axes.set_xlabel("time s")

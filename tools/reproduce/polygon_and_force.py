@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from surefoot.config.robot import LEGS
+from surefoot.tools.document import Part, Pictures, Table, Words
 from surefoot.tools.evaluation.grader import ENVELOPE_FORCES
-from surefoot.tools.reproduce.experiment import Evidence, Experiment, Part, Pictures, Plan, Table, Words
+from surefoot.tools.reproduce.experiment import Evidence, Experiment, Plan
 from surefoot.tools.reproduce.force_tracking import components, errors, probes_of
-from surefoot.tools.reproduce.plots import force_panel, new_figure, polygon_panel, save, styled
+from surefoot.tools.reproduce.plots import Axes, force_panel, new_figure, polygon_panel, save, styled
 from surefoot.tools.reproduce.recorded_run import RecordedRun
 from surefoot.tools.reproduce.run_spec import RunSpec
 
@@ -83,6 +86,21 @@ def _probe_shown(arms: dict[str, list[RecordedRun]]) -> tuple[int, int] | None:
     return best
 
 
+def stability_row(
+    panels: Sequence[Axes],
+    series: dict[str, np.ndarray],
+    rows: np.ndarray,
+    title: str,
+    names: Sequence[str] = ("asked", "mpc"),
+) -> None:
+    """Normal, x and y of the named forces of one probe, and the polygon of the other feet, in four panels."""
+    t, leg = series["t"][rows] - series["t"][rows[0]], int(series["leg"][rows[0]])
+    parts = components(series, rows, names)
+    for axes, values, name in zip(panels, parts, (f"{title}, normal", "x", "y"), strict=False):
+        force_panel(axes, t, values, name)
+    polygon_panel(panels[3], series["p_WF"][rows[-1]], leg, series["com_W"][rows], series["margin_m"][rows])
+
+
 def _figure(evidence: Evidence, arms: dict[str, list[RecordedRun]], index: int, probe: int) -> Pictures:
     with styled():
         figure = new_figure(11.0, 5.6)
@@ -90,11 +108,7 @@ def _figure(evidence: Evidence, arms: dict[str, list[RecordedRun]], index: int, 
         for line, (arm, label) in zip(grid, ARMS.items(), strict=True):
             series = arms[arm][index].arrays("forces")
             rows = probes_of(series)[probe]
-            t, leg = series["t"][rows] - series["t"][rows[0]], int(series["leg"][rows[0]])
-            titles = (f"{label}: {LEGS[leg]}, normal", "x", "y")
-            for axes, values, title in zip(line, components(series, rows, ("asked", "mpc")), titles, strict=False):
-                force_panel(axes, t, values, title)
-            polygon_panel(line[3], series["p_WF"][rows[-1]], leg, series["com_W"][rows], series["margin_m"][rows])
+            stability_row(line, series, rows, f"{label}: {LEGS[series['leg'][rows[0]]]}")
         handles, labels = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper center", ncols=2)
         path = save(figure, evidence.folder / "polygon_and_force.svg")

@@ -9,12 +9,13 @@ from importlib.metadata import version
 from pathlib import Path
 
 from surefoot.config.typed_toml import ConfigError, to_table
+from surefoot.tools.document import Part, Words, write_document
 from surefoot.tools.evaluation.marks import judge
 from surefoot.tools.evaluation.pooled import is_error
 from surefoot.tools.evaluation.workers import Work, run_apart
 from surefoot.tools.reproduce import force_tracking, missing_planks, planks, polygon_and_force, rocks
-from surefoot.tools.reproduce.experiment import Evidence, Experiment, Part, Plan, Words
-from surefoot.tools.reproduce.page import Page, Section, write_page
+from surefoot.tools.reproduce.experiment import Evidence, Experiment, Plan
+from surefoot.tools.reproduce.page import Page, Section
 from surefoot.tools.reproduce.recorded_run import RECORDERS, RecordedRun, by_arm, is_whole, record, sources
 from surefoot.tools.reproduce.recording.recorder import Column, write_csv
 from surefoot.tools.reproduce.run_spec import RunSpec
@@ -83,7 +84,7 @@ def reproduce(
         _section(out, each, specs[each.name], failed[each.name], plan, darkroom, say) for each in experiments
     ]
     path = out / PAGE
-    write_page(_page(command, plan, specs, sections), path)
+    write_document(_page(command, plan, specs, sections).html(), path)
     say(f"written: {path}")
     return path
 

@@ -4,18 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from surefoot.tools.document import Part, Pictures, Words
 from surefoot.tools.evaluation.one_run import LIMIT_S
-from surefoot.tools.reproduce.experiment import (
-    Evidence,
-    Experiment,
-    Part,
-    Pictures,
-    Plan,
-    Words,
-    crossing_table,
-    cut_off,
-    per_foothold,
-)
+from surefoot.tools.reproduce.experiment import Evidence, Experiment, Plan, crossing_table, cut_off, per_foothold
 from surefoot.tools.reproduce.recorded_run import RecordedRun
 from surefoot.tools.reproduce.run_spec import RunSpec
 from surefoot.tools.reproduce.snapshots import Shot, whole_robot

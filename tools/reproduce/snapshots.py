@@ -1,23 +1,15 @@
-"""Pictures of recorded instants, rendered off screen after the run and apart from it.
-
-Whatever goes wrong with a renderer costs pictures only: each attempt has a process of its own.
-"""
+"""Pictures of recorded instants, rendered off screen after the run and apart from it."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from surefoot.tools.evaluation.workers import run_apart
+from surefoot.tools.offscreen import BACKENDS, NO_RENDERER, Offscreen
 from surefoot.tools.reproduce.run_spec import RunSpec
-
-BACKENDS = ("egl", "osmesa")
-"""What MuJoCo can draw with where there is no display, in the order in which they are tried."""
 
 SIZE = (720, 480)
 """Width and height of a picture in pixels."""
@@ -67,40 +59,14 @@ class Darkroom:
     """Renders shots with the first backend that works here."""
 
     def __init__(self, backends: Sequence[str] = BACKENDS):
-        """`MUJOCO_GL`, where it is set, says which backend is wanted."""
-        asked = os.environ.get("MUJOCO_GL", "")
-        self._backends = [asked] if asked else list(backends)
-        self._reasons: list[str] = []
+        self._offscreen = Offscreen(backends)
 
     def develop(self, spec: RunSpec, shots: Sequence[Shot]) -> str:
         """Render shots of one deployment to their files; returns why there are none, or nothing."""
-        while shots and self._backends:
-            backend = self._backends[0]
-            with _environment("MUJOCO_GL", backend):
-                ((_, told),) = run_apart(render, [(spec, list(shots))], 1)
-            if not told:
-                return ""
-            if "failure" in told and "worker died" not in told["failure"]:
-                return f"not rendered: {told['failure']}"
-            self._reasons.append(f"{backend}: {told.get('no_renderer', told.get('failure'))}")
-            self._backends.pop(0)
         if not shots:
             return ""
-        return f"no renderer on this machine ({'; '.join(self._reasons) or 'none was tried'})"
-
-
-@contextmanager
-def _environment(name: str, value: str) -> Iterator[None]:
-    """A variable for the processes started meanwhile: MuJoCo reads it when it is imported."""
-    before = os.environ.get(name)
-    os.environ[name] = value
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ[name]
-        else:
-            os.environ[name] = before
+        told = self._offscreen.run(render, (spec, list(shots)))
+        return f"not rendered: {told['failure']}" if "failure" in told else told.get(NO_RENDERER, "")
 
 
 def render(spec: RunSpec, shots: Sequence[Shot]) -> dict:
@@ -115,7 +81,7 @@ def render(spec: RunSpec, shots: Sequence[Shot]) -> dict:
         width, height = SIZE
         renderer = mujoco.Renderer(model, height, width)
     except Exception as error:  # what is missing of GL shows as almost any kind of error
-        return {"no_renderer": f"{type(error).__name__}: {error}"}
+        return {NO_RENDERER: f"{type(error).__name__}: {error}"}
     from PIL import Image
 
     data = mujoco.MjData(model)

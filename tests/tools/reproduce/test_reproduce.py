@@ -3,11 +3,11 @@
 import json
 import re
 from dataclasses import replace
-from html.parser import HTMLParser
 
 import numpy as np
 import pytest
 import stand_ins
+from html_page import Page
 
 from surefoot.config.reproduce import Reproduce
 from surefoot.config.typed_toml import ConfigError, build, to_table, with_override
@@ -34,34 +34,6 @@ def stands(plan):
 
 FORCES = replace(force_tracking.EXPERIMENT, specs=forces)
 PLANKS = replace(planks.EXPERIMENT, specs=stands)
-
-
-class Page(HTMLParser):
-    """Fails on a tag that is not closed, or closed by another one; keeps text, sources and links."""
-
-    VOID = ("meta", "img", "br")
-
-    def __init__(self, html):
-        super().__init__()
-        self.open, self.text, self.sources, self.links, self.ids = [], [], [], [], set()
-        self.feed(html)
-        self.close()
-        assert not self.open
-
-    def handle_starttag(self, tag, attrs):
-        given = dict(attrs)
-        if tag not in self.VOID:
-            self.open.append(tag)
-        self.sources += [given[key] for key in ("src", "srcset", "data", "poster") if key in given]
-        self.links += [given["href"]] if "href" in given else []
-        self.ids |= {given["id"]} if "id" in given else set()
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        if "style" not in self.open:
-            self.text.append(data)
 
 
 def needs_nothing_else(html):

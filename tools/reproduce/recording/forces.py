@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from surefoot.bus.message import Message
 from surefoot.bus.messages import JointCommand, MotionReference, Policy, SimTruth, StateEstimate
 from surefoot.components.fsm.support_triangle import SupportTriangle
 from surefoot.config.deployment import Deployment
+from surefoot.tools.picture import SupportMargin
 from surefoot.tools.reproduce.recording.recorder import Column
 
 FORCES = ("asked", "mpc", "wbc", "estimated", "true")
@@ -35,7 +38,10 @@ def asked_force(reference: MotionReference, t: float) -> np.ndarray:
 
 
 class ForceSeries:
-    """One row a reference of the state machine, from lift-off to the end of each probe."""
+    """One row a reference of the state machine, from lift-off to the end of each probe.
+
+    What nobody has told stays empty: a robot has no truth. Then feet, centre of mass and margin are estimated.
+    """
 
     columns = (
         Column("t_s", "simulated time [s]"),
@@ -49,17 +55,19 @@ class ForceSeries:
             for axis in "xyz"
         ),
         *(Column(f"normal_{axis}", f"local surface normal, {axis} in the world") for axis in "xyz"),
-        Column("com_x_m", "true centre of mass, x in the world [m]"),
-        Column("com_y_m", "true centre of mass, y in the world [m]"),
+        Column("com_x_m", "true centre of mass, or the estimated one, x in the world [m]"),
+        Column("com_y_m", "the same, y in the world [m]"),
         *(
-            Column(f"{leg}_{axis}_m", f"true centre of foot {leg}, {axis} in the world [m]")
+            Column(f"{leg}_{axis}_m", f"true centre of foot {leg}, or the estimated one, {axis} in the world [m]")
             for leg in ("FL", "FR", "RL", "RR")
             for axis in "xy"
         ),
-        Column("margin_m", "true centre of mass to the nearest edge of the other three feet, positive inside [m]"),
+        Column("margin_m", "that centre of mass to the nearest edge of the other three feet, positive inside [m]"),
     )
 
     def __init__(self, deployment: Deployment):
+        self._robot = deployment.load_robot()
+        self._support: SupportMargin | None = None  # made where there is no truth
         self._truth: SimTruth | None = None
         self._estimate: StateEstimate | None = None
         self._command: JointCommand | None = None
@@ -84,26 +92,38 @@ class ForceSeries:
         before, self._state = self._state, reference.state
         if reference.state in _ON_THE_WAY and before != reference.state:
             self._probe += 1
-        truth, estimate, command, policy = self._truth, self._estimate, self._command, self._policy
         leg = reference.leg
         if leg < 0 or reference.state not in (*_ON_THE_WAY, "PROBE"):
             return
-        if truth is None or estimate is None or command is None or policy is None:
+        seen = self._truth or self._estimate
+        if seen is None:
             return
-        step = min(max(int((truth.t - policy.t) / policy.dt), 0), len(policy.u) - 1)
-        forces = (
-            asked_force(reference, truth.t),
-            policy.u[step].reshape(8, 3)[leg],
-            command.force_W[leg],
-            estimate.force_W[leg],
-            truth.force_W[leg],
-        )
+        com_W = self._com(seen)
         self._rows.append(
-            [truth.t, self._probe, leg, reference.around, reference.state == "PROBE"]
-            + [float(value) for force in forces for value in force]
-            + [*reference.normal_W.tolist(), *truth.com_W[:2].tolist(), *truth.p_WF[:, :2].ravel().tolist()]
-            + [SupportTriangle(truth.p_WF, leg).margin(truth.com_W[:2])]
+            [seen.t, self._probe, leg, reference.around, reference.state == "PROBE"]
+            + [float(value) for force in self._forces(reference, seen.t) for value in force]
+            + [*reference.normal_W.tolist(), *com_W[:2].tolist(), *seen.p_WF[:, :2].ravel().tolist()]
+            + [SupportTriangle(seen.p_WF, leg).margin(com_W[:2])]
         )
+
+    def _forces(self, reference: MotionReference, t: float) -> Iterator[np.ndarray]:
+        """(3,) of each of `FORCES` on the leg that probes; NaN where it was not told."""
+        leg, policy, untold = reference.leg, self._policy, np.full(3, np.nan)
+        yield asked_force(reference, t)
+        if policy is None:
+            yield untold
+        else:
+            step = min(max(int((t - policy.t) / policy.dt), 0), len(policy.u) - 1)
+            yield policy.u[step].reshape(8, 3)[leg]
+        for told in (self._command, self._estimate, self._truth):
+            yield untold if told is None else told.force_W[leg]
+
+    def _com(self, seen: SimTruth | StateEstimate) -> np.ndarray:
+        if isinstance(seen, SimTruth):
+            return seen.com_W
+        if self._support is None:
+            self._support = SupportMargin(self._robot)
+        return self._support.com(seen.p_WB, seen.quat_WB, seen.q)
 
     def arrays(self) -> dict[str, np.ndarray]:
         """(n,) t, probe, leg, around, pressing, margin_m; (n, 3) forces, normal_W; (n, 2) com_W; (n, 4, 2) p_WF"""
