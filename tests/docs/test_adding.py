@@ -43,7 +43,7 @@ def test_the_terrain_is_a_section_of_a_lane(tree):
         "from surefoot.config.deployment import load_deployment\n"
         "from surefoot.hw.mujoco.backend import MujocoRobot\n"
         f"names = MujocoRobot(load_deployment('config/lane.toml', [{change!r}])).model\n"
-        "assert names.geom('0_stair_0') is not None and names.geom('2_stair_0') is not None",
+        "assert names.geom('0_stair_0') is not None and names.geom('1_stair_0') is not None",
     )
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, redirect_stdout
 from pathlib import Path
 
 from surefoot.tools.commands.call import deployment_file, seeds
@@ -83,11 +84,12 @@ def _run(call: argparse.Namespace) -> int:
 
 @contextmanager
 def _progress_to_stderr() -> Iterator[None]:
-    """What this process and the runs' own say goes to the standard error: the file descriptor is theirs too."""
+    """What this process and the runs' own say goes to the standard error: theirs by the file descriptor."""
     kept = os.dup(1)
     os.dup2(2, 1)
     try:
-        yield
+        with redirect_stdout(sys.stderr):
+            yield
     finally:
         os.dup2(kept, 1)
         os.close(kept)

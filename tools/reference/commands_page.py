@@ -25,5 +25,5 @@ def commands_page(parser: argparse.ArgumentParser) -> str:
 
 
 def _help(parser: argparse.ArgumentParser) -> str:
-    parser.formatter_class = partial(parser.formatter_class, width=_WIDTH)  # type: ignore[assignment]
+    parser.formatter_class = partial(parser.formatter_class, width=_WIDTH)  # type: ignore[call-arg]
     return parser.format_help()

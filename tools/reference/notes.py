@@ -82,7 +82,8 @@ def _above(lineno: int, lines: list[str], comments: dict[int, str]) -> tuple[str
 def _attributes(cls: type) -> dict[str, str]:
     """Each name under "Attributes" in the docstring with its text."""
     _, _, listed = inspect.cleandoc(cls.__doc__ or "").partition("\nAttributes:\n")
-    found, names = {}, []
+    found: dict[str, str] = {}
+    names: list[str] = []
     for line in textwrap.dedent(listed).splitlines():
         match = _ATTRIBUTE.match(line)
         if match:
