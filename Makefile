@@ -10,7 +10,9 @@ export OMP_NUM_THREADS = 1
 export OPENBLAS_NUM_THREADS = 1
 export MKL_NUM_THREADS = 1
 
-.PHONY: run test bench lint clean
+.PHONY: install run test bench docs lint clean
+
+install: $(STAMP)
 
 run: $(STAMP)
 	$(BIN)/surefoot run $(CONFIG)
@@ -20,6 +22,10 @@ test: $(STAMP)
 
 bench: $(STAMP)
 	$(BIN)/surefoot bench
+
+docs: $(STAMP)
+	$(BIN)/python -P -m sphinx -n -W --keep-going -q docs build/docs
+	@echo "open build/docs/index.html"
 
 lint: $(STAMP)
 	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy

@@ -32,7 +32,7 @@ from surefoot.config.wbc import Wbc
 class Run:
     """How the processes run together."""
 
-    clock: Literal["simulated", "monotonic"] = "simulated"
+    clock: Literal["simulated", "monotonic"] = "simulated"  # it waits for every process, or for none
     command: str = "forward"  # given by the operator's side once the robot stands; "" waits for one
     vision: bool = False  # a depth camera, a map from it and footholds adapted to it; false: blind
     namespace: str = "surefoot"  # prefix of every key on the wire
@@ -51,7 +51,7 @@ class Run:
 class Deployment:
     """A whole deployment; each section's type holds its defaults, and what one asks of another is checked here."""
 
-    robot: str = "aliengo"
+    robot: str = "aliengo"  # its kind, a file in config/robots/
     run: Run = field(default_factory=Run)
     network: Network = field(default_factory=Network)
     operator: Operator = field(default_factory=Operator)

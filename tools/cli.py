@@ -19,6 +19,7 @@ from surefoot.tools.commands import (  # noqa: E402
     calibrate,
     child,
     command,
+    completion,
     cut,
     doctor,
     drive,
@@ -56,23 +57,40 @@ COMMANDS = (
     *(record, info, replay),
     *(plot, report, video, export),
     *(eval, press, reproduce, faults, bench, soak),
+    *(completion,),
 )
 """In the order of the help."""
 
+_EPILOG = """\
+exit code: 0 done; 1 it was done and went wrong: the robot fell, a check failed, something differs; 2 the call was
+wrong, or there is nothing it could be done with: no such file, no stack that runs; 130 ended with Ctrl-C where
+that is not its ordinary end. `surefoot COMMAND --help` says what they mean there.
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run one command; returns the exit code: 0 done, 1 the run failed, 2 the call was wrong.
+example: surefoot run planks
+"""
 
-    Only what a user can mend is told in a line. An error of the program keeps its traceback: a process's log
-    is where it will be looked for.
-    """
+
+def make_parser() -> argparse.ArgumentParser:
+    """The parser of all commands."""
     parser = argparse.ArgumentParser(
-        "surefoot", description="A quadruped that tests the ground before it trusts it."
+        "surefoot",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="A quadruped that tests the ground before it trusts it.",
+        epilog=_EPILOG,
     )
     subparsers = parser.add_subparsers(required=True, metavar="COMMAND")
     for each in COMMANDS:
         each.add(subparsers)
-    call = parser.parse_args(arguments)
+    return parser
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one command; returns the exit code, as the help tells it.
+
+    Only what a user can mend is told in a line. An error of the program keeps its traceback: a process's log
+    is where it will be looked for.
+    """
+    call = make_parser().parse_args(arguments)
     try:
         return call.run(call)
     except MessageError:

@@ -1,4 +1,4 @@
-"""MOVE and DETECT_CONTACT of Fig. 6: the base over the other three feet, then the foot to its foothold."""
+"""MOVE and DETECT_CONTACT of Fig. 6 (Sec. II-D.4): the base over three feet, then the foot to its foothold."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""PRE_OPT, SEND, OPT of Fig. 6: which leg, and a foothold for it that map, reach and optimisation agree to."""
+"""PRE_OPT, SEND, OPT of Fig. 6 (Secs. II-D.1 to II-D.3): a leg, and a foothold for map, reach and plan alike."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""PROBE and PROBE_AROUND of Fig. 6: a foothold bears its forces and is accepted, or gives way."""
+"""PROBE and PROBE_AROUND of Fig. 6 (Sec. II-D.5): a foothold bears its forces and is accepted, or gives way."""
 
 from __future__ import annotations
 

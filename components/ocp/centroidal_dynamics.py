@@ -1,8 +1,8 @@
-"""Centroidal dynamics of a legged robot and their exact linearisation, batched over the nodes.
+"""Eq. (1c): centroidal dynamics of a legged robot (Sec. II-B.2), exactly linearised, batched over the nodes.
 
 State and inputs are those of `layout`. Inputs of a leg are three numbers: its contact force in W while it
-stands (its foot velocity is zero), its foot velocity in W while it swings (its force is zero), so eq. (3) is
-projected out and 12 inputs remain of the paper's 24.
+stands (its foot velocity is zero), its foot velocity in W while it swings (its force is zero), so eq. (3),
+that is eq. (1d), is projected out and 12 inputs remain of the paper's 24.
 
 Generalised velocities v (18: base linear and angular in B, joints) are lifted: carried along as unknowns
 with S v = (m h; w), S = [A_g; J_feet], and corrected by the linearisation; v[6:] are the paper's dq_j.

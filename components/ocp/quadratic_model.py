@@ -1,4 +1,4 @@
-"""The problem's cost to second order, gathered by what its terms are functions of."""
+"""The problem's cost, eq. (1a), to second order, gathered by what its terms are functions of."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The relaxed logarithmic barrier that makes a cost of every inequality h >= 0 of Table I."""
+"""The relaxed logarithmic barrier that makes a cost of every inequality of eq. (1e); its figures are Table I."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Eq. (2): quadratic tracking of reference states, inputs, foot positions and foot velocities."""
+"""Eq. (2): quadratic tracking of reference states, inputs, foot positions and velocities (Sec. II-B.4)."""
 
 from __future__ import annotations
 

@@ -1,10 +1,13 @@
 """A wrong call ends with code 2 and says what would be right."""
 
+import json
+
 import pytest
 
 from surefoot.bus.codec import check
 from surefoot.bus.errors import MessageError
 from surefoot.bus.messages import HardwareState
+from surefoot.bus.topics import TOPICS
 from surefoot.tools.cli import main
 from surefoot.tools.commands import topics
 
@@ -77,3 +80,11 @@ def test_an_error_of_the_program_keeps_its_traceback(kind, fault, monkeypatch):
     monkeypatch.setattr(topics, "_run", lambda call: fault())
     with pytest.raises(kind):
         main(["topics"])
+
+
+def test_topics_for_a_script(capsys):
+    assert main(["topics", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told.keys() == TOPICS.keys()
+    assert told["mpc/policy"] == {"message": "Policy", "writer": "mpc", "rate_hz": 100.0, "stale_after_s": 0.1}
+    assert told["fsm/event"]["rate_hz"] is None and told["fsm/event"]["stale_after_s"] is None

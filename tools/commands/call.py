@@ -20,6 +20,11 @@ def deployment_file(name: str) -> Path:
     return own
 
 
+def deployment_names() -> list[str]:
+    """The deployments that come with the project."""
+    return sorted(path.stem for path in _CONFIG.glob("*.toml"))
+
+
 def seeds(text: str) -> list[int]:
     """The seeds of "first:end" or "0,3,7".
 

@@ -16,6 +16,8 @@ Ctrl-C or otherwise, the supervisor starts its own again. io is not lent: it hol
 monotonic clock estimator, wbc and fsm are lent only while the robot is damped.
 
 Without a supervisor it joins whatever processes were started by hand in the same way, io first.
+
+exit code: 0 it ended in order; 1 it failed, or had to be ended; 2 the call was wrong
 """
 
 _EXAMPLES = """\

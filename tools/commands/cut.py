@@ -7,17 +7,23 @@ import argparse
 from surefoot.tools.commands.bus_call import add_bus_arguments
 from surefoot.tools.commands.say import say_on_bus
 
-_CUT = """
+_CUT = """\
 Take the torque from every joint of the robot of a running stack in the next cycle: it falls where it is. io
 itself obeys; no other process has to run. Nothing moves before `surefoot command damp`, which brakes the joints
 again, and then `stand`.
+
+exit code: 0 it was said; 2 the call was wrong, or no stack runs there
 """
 
 
 def add(commands: argparse._SubParsersAction) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
-        "cut", help="no torque at once: the robot falls", description=" ".join(_CUT.split())
+        "cut",
+        help="no torque at once: the robot falls",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_CUT,
+        epilog="example: surefoot cut",
     )
     add_bus_arguments(parser)
     parser.set_defaults(run=_run)

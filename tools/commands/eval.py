@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext, redirect_stdout
 from pathlib import Path
 
 from surefoot.tools.commands.call import deployment_file, seeds
+
+_EVAL = """\
+Run a deployment in lockstep, a run for each seed, and grade it with the simulator's truth. Both files in the
+folder are written after every run; the same call goes on where it was stopped.
+
+exit code: 0 every run succeeded; 1 one did not; 2 the call was wrong
+"""
 
 
 def add(commands: argparse._SubParsersAction) -> None:
@@ -13,6 +24,8 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "eval",
         help="grade the stack in lockstep",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_EVAL,
         epilog="example: surefoot eval planks --seeds 0:10 --jobs 2 --out out",
     )
     parser.add_argument("scenario", help="a deployment file, or its name in config/ (flat, planks, rocks, ...)")
@@ -37,26 +50,46 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--record", action="store_true", help="keep a recording of every run in the folder: about 4 MB a second"
     )
+    parser.add_argument("--json", action="store_true", help="print the outcome and the marks for a script")
     parser.set_defaults(run=_run)
 
 
 def _run(call: argparse.Namespace) -> int:
-    from surefoot.tools.evaluation.evaluate import evaluate
-    from surefoot.tools.evaluation.summary import summary
+    import json
 
-    results = evaluate(
-        deployment_file(call.scenario),
-        seeds(call.seeds),
-        call.out,
-        call.arm,
-        call.set,
-        call.jobs,
-        call.limit,
-        vision=None if call.vision is None else call.vision == "on",
-        fresh=call.fresh,
-        cluster=call.dask,
-        record=call.record,
-    )
-    print(summary(results))
-    print(f"written to {call.out}")
+    from surefoot.tools.evaluation.evaluate import evaluate
+    from surefoot.tools.evaluation.summary import outcome, summary
+
+    with _progress_to_stderr() if call.json else nullcontext():
+        results = evaluate(
+            deployment_file(call.scenario),
+            seeds(call.seeds),
+            call.out,
+            call.arm,
+            call.set,
+            call.jobs,
+            call.limit,
+            vision=None if call.vision is None else call.vision == "on",
+            fresh=call.fresh,
+            cluster=call.dask,
+            record=call.record,
+        )
+    if call.json:
+        print(json.dumps(outcome(results), indent=1))
+    else:
+        print(summary(results))
+        print(f"written to {call.out}")
     return 0 if all(run["success"] for run in results["runs"]) else 1
+
+
+@contextmanager
+def _progress_to_stderr() -> Iterator[None]:
+    """What this process and the runs' own say goes to the standard error: theirs by the file descriptor."""
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        with redirect_stdout(sys.stderr):
+            yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)

@@ -8,11 +8,13 @@ import time
 from surefoot.tools.commands.bus_call import add_bus_arguments, open_bus
 from surefoot.tools.commands.call import CallError
 
-_HEARTBEAT = """
+_HEARTBEAT = """\
 Say again and again, until Ctrl-C, that the operator's machine is there. Where a deployment asks for it with
 operator.heartbeat_s, a robot that hears nothing for so long settles as by `surefoot stop`, and obeys no command
 to move until it hears the beat again and a person commands. Let it run on the machine that the robot is commanded
 from: it watches the link to that machine, and not whether anybody sits before it.
+
+exit code: 2 the call was wrong, no stack runs there or it asks for no heartbeat; 130 ended with Ctrl-C
 """
 
 
@@ -21,7 +23,8 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "heartbeat",
         help="say that the operator is there, until Ctrl-C",
-        description=" ".join(_HEARTBEAT.split()),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_HEARTBEAT,
         epilog="example: surefoot heartbeat --connect mine.toml",
     )
     add_bus_arguments(parser)

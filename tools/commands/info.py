@@ -5,15 +5,22 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+_INFO = """\
+List the topics and processes of a recording and say what is missing of them, also of a file that was cut off
+because its recorder was killed.
+
+exit code: 0 nothing is missing; 1 something is; 2 the call was wrong, or the file cannot be read
+"""
+
 
 def add(commands: argparse._SubParsersAction) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
         "info",
         help="what is in a recording, and what is missing",
-        description="Lists the topics and processes of a recording and says what is missing of them, also of a "
-        "file that was cut off because its recorder was killed. Exit code 1 if anything is missing.",
-        epilog="example: surefoot info out.mcap",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_INFO,
+        epilog="examples: surefoot info out.mcap\n          surefoot info out.mcap --json | jq .gaps",
     )
     parser.add_argument("recording", type=Path)
     parser.add_argument("--json", action="store_true", help="for scripts")

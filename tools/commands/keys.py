@@ -12,6 +12,13 @@ Make an authority, the robot's identity and the operator's in a new folder.
 
 Copy DIR/robot to the robot's computer and DIR/operator to the operator's, each into the folder that the
 deployment's network.keys_dir names. DIR/authority signs further identities: keep it on neither, offline.
+
+exit code: 0 made; 2 the call was wrong, or the folder is there already
+"""
+_SHOW = """\
+Whose identities a folder holds, by whom they were signed and until when they are valid.
+
+exit code: 0 all can be used; 1 one cannot; 2 the call was wrong
 """
 
 
@@ -36,7 +43,13 @@ def add(commands: argparse._SubParsersAction) -> None:
     )
     init.add_argument("--days", type=int, default=365, help="how long they are valid")
     init.set_defaults(run=_init)
-    show = verbs.add_parser("show", help="whose they are, until when, and whether they can be used")
+    show = verbs.add_parser(
+        "show",
+        help="whose they are, until when, and whether they can be used",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_SHOW,
+        epilog="example: surefoot keys show keys",
+    )
     show.add_argument("folder", type=Path, metavar="DIR")
     show.set_defaults(run=_show)
 

@@ -7,14 +7,21 @@ from pathlib import Path
 
 from surefoot.tools.commands.call import deployment_file
 
+_PRESS = """\
+Press a foot-sized sphere into every point of a terrain and draw how far it sinks; the line is where it is called a
+collapse.
+
+exit code: 0 drawn; 2 the call was wrong
+"""
+
 
 def add(commands: argparse._SubParsersAction) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
         "press",
         help="draw where a terrain gives way under a force",
-        description="Presses a foot-sized sphere into every point of a terrain and draws how far it sinks; "
-        "the line is where it is called a collapse.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_PRESS,
         epilog="example: surefoot press planks --force 110 --out map.png",
     )
     parser.add_argument("scenario", help="a deployment file, or its name in config/")

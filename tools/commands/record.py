@@ -10,7 +10,8 @@ Record everything that a running stack publishes, and which messages each of its
 end of the run. The processes keep their journals themselves and hand them over ten times a second, so that nothing
 is lost however busy the bus is.
 
-exit code: 0 all that was asked for is in the file; 1 it could not be written to the end, or something is missing
+exit code: 0 all that was asked for is in the file; 1 it could not be written to the end, or something is missing;
+2 the call was wrong, or no stack runs there
 """
 
 

@@ -7,18 +7,24 @@ import argparse
 from surefoot.tools.commands.bus_call import add_bus_arguments
 from surefoot.tools.commands.say import say_on_bus
 
-_STOP = """
+_STOP = """\
 Let the robot of a running stack settle, from whatever it does: a leg in the air is put down, the robot sits down
 and is damped. The run stays up, and nothing moves before `surefoot command stand` or a direction. If it is still
 driven after operator.settle_s, io damps it. `surefoot command stop` is something else: it ends a walk, and the
 robot stands. `surefoot cut` takes the torque away at once. Ctrl-C in the terminal of `surefoot run` ends the run.
+
+exit code: 0 it was said; 2 the call was wrong, or no stack runs there
 """
 
 
 def add(commands: argparse._SubParsersAction) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
-        "stop", help="sit down, then damp; the run stays up", description=" ".join(_STOP.split())
+        "stop",
+        help="sit down, then damp; the run stays up",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_STOP,
+        epilog="example: surefoot stop",
     )
     add_bus_arguments(parser)
     parser.set_defaults(run=_run)

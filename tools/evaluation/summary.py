@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +32,20 @@ def summary(results: dict) -> str:
         lines += ["", _row(head), _rule(head)]
         lines += [_row((row.mark, row.asked, row.got, _MET[row.met])) for row in rows]
     return "\n".join(lines) + "\n"
+
+
+def outcome(results: dict) -> dict[str, Any]:
+    """What came of the runs, for a script: how each ended, and the marks; every measure is in `results.json`."""
+    runs = results["runs"]
+    return {
+        "scenario": results["scenario"],
+        "arm": results["arm"],
+        "vision": results.get("vision"),
+        "runs": len(runs),
+        "succeeded": sum(run["success"] for run in runs),
+        "failures": {str(run["seed"]): run["failure"] for run in runs if not run["success"]},
+        "marks": [asdict(row) for row in judge(results)],
+    }
 
 
 def _row(cells: Iterable[object]) -> str:

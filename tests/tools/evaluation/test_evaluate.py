@@ -12,6 +12,7 @@ import works
 
 from surefoot.config.deployment import Deployment
 from surefoot.config.typed_toml import ConfigError
+from surefoot.tools.cli import main
 from surefoot.tools.evaluation import one_run, results_file
 from surefoot.tools.evaluation.evaluate import evaluate
 from surefoot.tools.evaluation.summary import summary
@@ -51,6 +52,25 @@ def told(scenario, seeds, work, **options):
 
 def failures(results):
     return {run["seed"]: run["failure"] for run in results["runs"]}
+
+
+def test_for_a_script_there_is_one_object_and_nothing_else(scenario, capfd):
+    call = [
+        "eval",
+        str(scenario),
+        "--seeds",
+        "0",
+        "--limit",
+        "0.5",
+        "--json",
+        "--out",
+        str(scenario.parent / "out"),
+    ]
+    assert main(call) == 1
+    said, aside = capfd.readouterr()
+    told = json.loads(said)
+    assert (told["runs"], told["succeeded"], told["failures"]) == (1, 0, {"0": "timeout"})
+    assert "seed 0: timeout" in aside and {row["met"] for row in told["marks"]} <= {True, False, None}
 
 
 def test_a_run_is_recorded_and_can_be_replayed(scenario, tmp_path):

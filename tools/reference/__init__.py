@@ -1,0 +1,1 @@
+"""Reference pages made from the code: topics, settings, commands. `docs/conf.py` puts them into the site."""
