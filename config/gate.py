@@ -27,10 +27,9 @@ class Gate:
     speed_share: Annotated[float, Within(0.05, 2.0)] = 0.8
     # Of all motors [W] (95); half of what the vendor's own protection allows at its highest level.
     power: Annotated[float, Within(10.0, 2000.0)] = 500.0
-    # From a measured angle to the end of its range [rad] (0.41); the vendor's figure.
-    stop_margin: Annotated[float, Within(0.0, 0.5)] = 0.087
-    # With all four calves folded to within this of the lying posture the robot lies [rad]; a walk stays 0.7 away.
-    lying: Annotated[float, Within(0.0, 1.0)] = 0.3
+    # Of a measured angle beyond the end of its range [rad] (none: a leg behind a stride comes within 0.04 of it).
+    # The vendor's own protection ends the program 0.087 before the end, and with it this walk in mid-stride.
+    beyond_stop: Annotated[float, Within(0.0, 0.5)] = 0.087
     # Of a motor [deg C]; an emulated one ends there by a steady 30 N m.
     temperature_warn: Celsius = 70.0
     # [deg C]; 10 below where an emulated motor brakes by itself. The vendor gives no figure.

@@ -8,7 +8,7 @@ from pathlib import Path
 import shtab
 
 from surefoot.bus.topics import PROCESSES
-from surefoot.components.fsm.fsm import COMMANDS
+from surefoot.components.fsm.words import COMMANDS
 from surefoot.tools.commands.call import deployment_names
 
 _WORDS = {

@@ -58,8 +58,8 @@ class Check(Enum):
     POWER = ("power of all motors: 6 more cycles above the limit than below", Answer.DAMP, "hw.gate.power",
              Latch.AT_ONCE, "is a leg stuck?")
     HOT = ("temperature of a motor", Answer.DAMP, "hw.gate.temperature_max", Latch.AT_ONCE, "let it cool")
-    END_STOP = ("measured angle", Answer.DAMP, "the joint's range less hw.gate.stop_margin", Latch.AT_ONCE,
-                "bring the leg back into its range")
+    END_STOP = ("measured angle", Answer.DAMP, "the joint's range and hw.gate.beyond_stop", Latch.AT_ONCE,
+                "is its encoder sound, and hw.unit this robot's?")
     SPEED = ("measured speed", Answer.DAMP, "the joint's velocity_limit x hw.gate.speed_share", Latch.LATER,
              "has the foot lost the ground?")
     ABSENT = ("no command yet", Answer.DAMP, "", Latch.LATER, "")

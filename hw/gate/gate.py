@@ -45,7 +45,7 @@ class Gate:
         self._settings = settings
         self._commands = CommandWatch(limits, settings)
         self._sensors = SensorWatch(limits, own)
-        self._end_stops = EndStops(robot, limits, own)
+        self._end_stops = EndStops(limits, own)
         self._imu = ImuWatch(own.imu_stuck_cycles)
         self._encoders = EncoderWatch(own)
         self._motors = MotorWatch(robot, own)
