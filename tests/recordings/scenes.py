@@ -34,7 +34,7 @@ class Scene:
 SCENES = {
     "stand": Scene(0.0, 0.6, ("STAND_UP", "STAND")),
     "step": Scene(2.01, 2.9, ("MOVE", "DETECT_CONTACT", "PROBE")),
-    "probe_holds": Scene(7.01, 7.94, ("PROBE", "PROBE_AROUND", "OPT", "MOVE")),
+    "probe_holds": Scene(7.01, 7.93, ("PROBE", "PROBE_AROUND", "OPT", "MOVE")),
     "collapse": Scene(23.01, 23.94, ("PROBE", "LEG_UP", "MOVE", "DETECT_CONTACT")),
     "map": Scene(1.01, 1.35, ("STAND", "SEND", "OPT"), ("run.vision=true",)),
 }
