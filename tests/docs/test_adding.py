@@ -60,6 +60,7 @@ def mine(tmp_path, monkeypatch):
         changed = re.sub(rf"^{key} = [^#\n]*", change, figures, count=1, flags=re.MULTILINE) if change else figures
         assert not change or changed != figures, f"no {key} in the file"
         (folder / "robots" / "mine.toml").write_text(changed)
+        robot_file.load_robot.cache_clear()  # a process reads a robot once
         return load_deployment(ROOT / "config" / "flat.toml", ["robot=mine"])
 
     return read

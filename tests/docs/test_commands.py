@@ -70,7 +70,8 @@ def check(words, whole):
     if call.get("seeds"):
         seeds(call["seeds"])
     for (prog, argument), known in WORDS.items():
-        word = call.get(argument)
+        given = call.get(argument)
+        word = given[0] if isinstance(given, list) and given else given
         if parser is not None and parser.prog == prog and word and not PLACEHOLDER.fullmatch(word):
             assert word in known, f"surefoot {' '.join(words)}"
 

@@ -34,7 +34,7 @@ def offered(tmp_path_factory):
 
 
 def test_commands_and_their_verbs(offered):
-    assert {"run", "replay", "record", "reproduce", "restart"} >= offered("re") >= {"replay", "record"}
+    assert {"run", "replay", "record", "report", "reproduce", "restart"} >= offered("re") >= {"replay", "record"}
     assert offered("keys", "") == {"init", "show"}
 
 

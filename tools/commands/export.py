@@ -25,7 +25,8 @@ def add(commands: argparse._SubParsersAction) -> None:
         "  urdf       the robot's description\n"
         "  mjcf       the same for MuJoCo\n\n"
         "The MPC's policies and the depth images are nearly all of a recording: json-mcap and parquet have them\n"
-        "only when they are named with --topics.",
+        "only when they are named with --topics.\n\n"
+        "exit code: 0 done; 2 the call was wrong, or the recording cannot be read",
         epilog="examples:\n  surefoot export out.mcap --to json-mcap --out foxglove.mcap\n"
         "  surefoot export out.mcap --to csv --topics state/estimate,sim/truth --out numbers\n"
         "  surefoot export aliengo --to urdf --out aliengo.urdf",

@@ -24,7 +24,8 @@ def add(commands: argparse._SubParsersAction) -> None:
         "  states        states of the machine and verdicts over time\n"
         "  path          the way and its footholds from above\n"
         "  estimator     estimate against truth (recordings of the simulator)\n"
-        "  timing        step times of the processes\n",
+        "  timing        step times of the processes\n\n"
+        "exit code: 0 done; 2 the call was wrong, or the recording cannot be read",
         epilog="examples:\n  surefoot plot out.mcap --what probing --leg FL --probe 2 --out probe.png\n"
         "  surefoot plot out.mcap --what timing --out timing.html",
     )
