@@ -13,8 +13,8 @@ def add(commands: argparse._SubParsersAction) -> None:
         help="tell the story of a recording on one page",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description="Writes one HTML page that needs nothing else: the map of the path with every foothold and\n"
-        "what came of it, a table of the probes, a time line of states, why the run ended, settings and versions.\n"
-        "It prints well. What the recording does not hold is left out.\n\n"
+        "what came of it, a table of the probes, a time line of states, why the run ended, settings and\n"
+        "versions. It prints well. What the recording does not hold is left out.\n\n"
         "exit code: 0 done; 2 the call was wrong, or the recording cannot be read",
         epilog="example: surefoot report out.mcap --out run.html",
     )

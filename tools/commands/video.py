@@ -14,9 +14,9 @@ def add(commands: argparse._SubParsersAction) -> None:
         "video",
         help="render a recording as an MP4, without a display",
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        description="Renders what the simulator would have shown of a recording: the truth where it was recorded,\n"
-        "otherwise the estimate. Arrows are the forces on the feet, orange on the leg whose turn it is; discs are\n"
-        "the verdicts on footholds.\n\n"
+        description="Renders what the simulator would have shown of a recording: the truth where it was\n"
+        "recorded, otherwise the estimate. Arrows are the forces on the feet, orange on the leg whose turn it\n"
+        "is; discs are the verdicts on footholds.\n\n"
         "exit code: 0 done; 2 the call was wrong, or the recording cannot be read",
         epilog="example: surefoot video out.mcap --out run.mp4 --speed 4 --from 20 --to 60",
     )
