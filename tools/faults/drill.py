@@ -153,9 +153,11 @@ class Drill:
         self, run: ObservedRun, case: Case, t: float, since: int, mark: tuple[int, int]
     ) -> Result:
         """Damped, ended or up: no command that was too old was ever applied, and the robot did not fall over."""
-        states = run.since("hw/state", t)
-        truths = [decode(SimTruth, payload) for payload in run.heard["sim/truth"][since:]]
-        commands = run.since("joint/command", t)
+        # What is published from here on, while this machine is busy with the judging, is no doing of the fault.
+        until, payloads = run.t, run.heard["sim/truth"][since:]
+        states = [state for state in run.since("hw/state", t) if state.t <= until]
+        truths = [decode(SimTruth, payload) for payload in payloads]
+        commands = [command for command in run.since("joint/command", t) if command.t <= until]
         told = run.ending() if run.over else run.words(case.process, mark) or run.words("io: ", mark)
         damped = [state.t for state in states if state.damping]
         damped += [command.t for command in commands if not command.kp.any() and not command.tau.any()]
