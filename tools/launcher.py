@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Literal
 
 from surefoot.tools.guardian import Guardian
 
@@ -56,13 +57,8 @@ class Launcher:
             boot: of its messages.
             words: more of `surefoot child`'s arguments.
         """
-        command = [sys.executable, "-P", "-m", "surefoot.tools.cli", "child", str(self._config), name]
-        command += [*self._settings, "--boot", str(boot), "--parent", str(os.getpid()), *words]
-        with self.log_of(name).open("ab") as log:
-            # A session of its own: Ctrl-C reaches the supervisor alone, which ends all in order.
-            popen = subprocess.Popen(
-                command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, start_new_session=True
-            )
+        arguments = ["child", str(self._config), name, *self._settings, "--boot", str(boot), *words]
+        popen = start_child(arguments, self.log_of(name), "ab")
         self.watch(popen.pid, name)
         return popen
 
@@ -88,6 +84,16 @@ class Launcher:
         lines = log.read_text(errors="replace").strip().splitlines() if log.exists() else []
         last = f" ({lines[-1][:160]})" if lines and code > 0 else ""
         return f"{name} ended with {how}{last}, see {log}"
+
+
+def start_child(arguments: Sequence[str], log: Path, mode: Literal["ab", "wb"] = "wb") -> subprocess.Popen:
+    """Start a command of `surefoot` that ends with this process; its log goes on ("ab") or begins anew ("wb")."""
+    command = [sys.executable, "-P", "-m", "surefoot.tools.cli", *arguments, "--parent", str(os.getpid())]
+    with log.open(mode) as output:
+        # A session of its own: Ctrl-C reaches the supervisor alone, which ends all in order.
+        return subprocess.Popen(
+            command, stdout=output, stderr=output, stdin=subprocess.DEVNULL, start_new_session=True
+        )
 
 
 def end_process(popen: subprocess.Popen | None) -> None:

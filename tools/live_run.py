@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rich.console import Console, Group
 
+from surefoot.bus.topics import PROCESSES
 from surefoot.components.real_time import refusal
 from surefoot.config.deployment import Deployment, load_deployment
 from surefoot.tools.commands.call import CallError
@@ -120,8 +121,9 @@ def _checked(call: RunCall) -> Deployment:
 
 def _refused_priority(deployment: Deployment) -> str:
     """Why the control chain has to go without real-time priority; empty where it has it, or none is asked."""
-    run = deployment.run
-    return refusal(run.realtime_priority) if run.clock == "monotonic" and run.realtime_priority else ""
+    run, most_urgent = deployment.run, max(process.urgency for process in PROCESSES.values())
+    asked = run.clock == "monotonic" and run.realtime_priority > 0
+    return refusal(run.realtime_priority + most_urgent) if asked else ""
 
 
 def _view(deployment: Deployment, port: int | None) -> AbstractContextManager[ViewProcess | None]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
-import sys
 from pathlib import Path
+
+from surefoot.tools.launcher import start_child
 
 NAME = "recorder"
 """Of its log."""
@@ -20,12 +20,7 @@ class RecorderProcess:
     def __init__(self, path: Path, namespace: str, log: Path):
         """Start recording the stack of a namespace to `path`."""
         self._path, self._log = path, log
-        command = [sys.executable, "-P", "-m", "surefoot.tools.cli", "record", str(path)]
-        command += ["--namespace", namespace, "--parent", str(os.getpid())]
-        with log.open("wb") as file:
-            self._popen = subprocess.Popen(
-                command, stdout=file, stderr=file, stdin=subprocess.DEVNULL, start_new_session=True
-            )
+        self._popen = start_child(["record", str(path), "--namespace", namespace], log)
 
     @property
     def pid(self) -> int:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
-from surefoot.tools.launcher import end_process
+from surefoot.tools.launcher import end_process, start_child
 
 
 class ViewProcess:
@@ -24,13 +21,8 @@ class ViewProcess:
         """
         self._log = log
         self._told = self._ended = False
-        command = [sys.executable, "-P", "-m", "surefoot.tools.cli", "view", "--wait", "--port", str(port)]
-        command += ["--namespace", namespace, "--parent", str(os.getpid())]
         log.parent.mkdir(parents=True, exist_ok=True)
-        with log.open("wb") as file:
-            self._popen = subprocess.Popen(
-                command, stdout=file, stderr=file, stdin=subprocess.DEVNULL, start_new_session=True
-            )
+        self._popen = start_child(["view", "--wait", "--port", str(port), "--namespace", namespace], log)
 
     @property
     def pid(self) -> int:
