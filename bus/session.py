@@ -22,10 +22,11 @@ _MARK_BYTES = 32
 _TX = {
     "lease": 2000,
     "keep_alive": 4,
-    # A stream to a reader that is late is dropped at once: to wait for it would hold up the others.
+    # A stream to a reader that is late is dropped at once: to wait for it would hold up the others. Where every
+    # message counts, a reader that takes none for so long [us] is cut off: the whole bus stands still meanwhile.
     "queue": {
         "size": {"data": 16, "real_time": 16},
-        "congestion_control": {"drop": {"wait_before_drop": 0}},
+        "congestion_control": {"drop": {"wait_before_drop": 0}, "block": {"wait_before_close": 1_000_000}},
     },
 }
 

@@ -82,6 +82,11 @@ class Ear:
         status = self.status.get(process)
         return status.reason if status is not None else ""
 
+    def boot(self, process):
+        """How often a process has been restarted; -1 while it has said nothing, as one that was killed young."""
+        status = self.status.get(process)
+        return status.boot if status is not None else -1
+
     def wait(self, holds):
         """Until `holds()`."""
         wait(holds, lambda: f"t = {self.t()}, { {n: s.reason for n, s in self.status.items()} }")
@@ -128,7 +133,7 @@ class Stack(Ear):
             self.children[name].wait()
             boots[name] = self.boots[name] = self.boots.get(name, 0) + 1
             self.start(name, boots[name])
-        self.wait(lambda: all(self.status[name].boot == boot for name, boot in boots.items()))
+        self.wait(lambda: all(self.boot(name) == boot for name, boot in boots.items()))
 
     def begin(self, command):
         """Give a command while time still stands at 0, then let the last process come up."""

@@ -38,7 +38,7 @@ def test_time_waits_at_a_breakpoint_and_goes_on_after_it_and_after_ctrl_c(superv
     child.terminate()
     said = child.communicate()[0]
     assert "seen wbc" in said and "boot 1; Ctrl-C gives it back" in said and "wbc given back" in said
-    live.wait(lambda: live.status["wbc"].boot == 2)
+    live.wait(lambda: live.boot("wbc") == 2)
     live.go_on(0.4)
     assert live.stands()
 
@@ -47,7 +47,7 @@ def test_time_waits_at_a_breakpoint_and_goes_on_after_it_and_after_ctrl_c(superv
     live.go_on(0.2)
     other.send_signal(signal.SIGINT)
     assert "mpc given back" in other.communicate()[0]
-    live.wait(lambda: live.status["mpc"].boot == 2)
+    live.wait(lambda: live.boot("mpc") == 2)
     live.go_on(0.4)
     told, code = live.asked()
     assert live.stands() and told["processes"]["mpc"]["lent_to"] is None and code == 0
@@ -60,7 +60,7 @@ def test_a_lent_process_that_is_killed_is_replaced_and_nothing_is_left_of_a_run_
     child = live.borrow("mpc")
     live.wait(lambda: "mpc" in live.status and live.status["mpc"].pid == child.pid)
     child.kill()
-    live.wait(lambda: live.status["mpc"].boot == 2)
+    live.wait(lambda: live.boot("mpc") == 2)
     live.go_on(0.2)
 
     child = live.borrow("wbc")

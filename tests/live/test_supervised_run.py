@@ -14,7 +14,7 @@ def test_every_process_but_io_is_restarted_while_the_robot_stands(supervised):
     live.wait(lambda: live.t() > 1.0)
     for name in ("estimator", "wbc", "mpc", "trajopt", "fsm"):
         live.command("restart", name)
-        live.wait(lambda name=name: name in live.status and live.status[name].boot == 1)
+        live.wait(lambda name=name: live.boot(name) == 1)
         live.go_on(0.6)
         assert live.stands(), name
     assert not any(status.bad_messages for status in live.status.values())
@@ -25,7 +25,7 @@ def test_a_controller_is_restarted_while_a_foot_is_in_the_air(supervised):
     live.wait(lambda: live.t() > 2.0 and live.last("fsm/reference").state == "DETECT_CONTACT")
     for name in ("wbc", "fsm"):
         live.command("restart", name)
-        live.wait(lambda name=name: live.status[name].boot == 1)
+        live.wait(lambda name=name: live.boot(name) == 1)
     live.wait(lambda: live.last("fsm/reference").state == "PROBE")  # nothing has been forgotten
     assert live.stands() and live.last("fsm/reference").boot == 1
 
@@ -34,7 +34,7 @@ def test_a_process_that_crashes_is_restarted_three_times_and_then_ends_the_run(s
     live = supervised("run.command=stand")
     live.wait(lambda: live.t() > 0.3)
     for boot in range(4):
-        live.wait(lambda boot=boot: live.status["wbc"].boot == boot and live.status["wbc"].steps > 0)
+        live.wait(lambda boot=boot: live.boot("wbc") == boot and live.status["wbc"].steps > 0)
         os.kill(live.status["wbc"].pid, signal.SIGKILL)
     live.wait_end()
     said = live.said()
