@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from zlib import crc32
 
 import zenoh
 
@@ -19,6 +20,7 @@ from surefoot.config.network import Network
 
 _CONNECT_MS = 30_000
 _MARK_BYTES = 32
+_SUM_BYTES = 4
 _TX = {
     "lease": 2000,
     "keep_alive": 4,
@@ -26,7 +28,7 @@ _TX = {
     # message counts, a reader that takes none for so long [us] is cut off: the whole bus stands still meanwhile.
     "queue": {
         "size": {"data": 16, "real_time": 16},
-        "congestion_control": {"drop": {"wait_before_drop": 0}, "block": {"wait_before_close": 1_000_000}},
+        "congestion_control": {"drop": {"wait_before_drop": 0}, "block": {"wait_before_close": 2_000_000}},
     },
 }
 
@@ -44,11 +46,15 @@ class Marked(bytes):
 class Session:
     """Publishes and subscribes bytes under a namespace.
 
+    A link that Zenoh gives up while it writes may hand what was queued to the reader out of step: parts of several
+    messages as one, under a key of any. So bytes travel with a checksum, and damaged ones are dropped.
+
     Attributes:
         namespace: prefix of every key on the wire.
         where: the endpoint of the hub, for people.
         beside_hub: the hub is on this machine.
         mark: what it publishes bears it; no other session has the same.
+        damaged: messages and answers that were dropped because they were not what their writer sent.
     """
 
     def __init__(
@@ -90,6 +96,7 @@ class Session:
             raise BusError(_no_session(self.where, namespace, network, hub, str(error))) from None
         self.mark = _mark_of(self._session.info.zid())
         self._hubs: tuple[bytes, ...] = (self.mark,) if hub else ()
+        self.damaged = 0
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._kept: list[object] = []
 
@@ -113,7 +120,7 @@ class Session:
             control = zenoh.CongestionControl.BLOCK if lossless else zenoh.CongestionControl.DROP
             publisher = self._session.declare_publisher(f"{self._prefix}/{key}", congestion_control=control)
             self._publishers[key] = publisher
-        publisher.put(payload, attachment=self.mark)
+        publisher.put(payload, attachment=self._seal(f"{self._prefix}/{key}", payload))
 
     def subscribe(self, key: str, receive: Callable[[str, Marked], None]) -> None:
         """Call `receive(key, bytes)` for every message; it must only store, it runs in the session's thread.
@@ -123,7 +130,8 @@ class Session:
         skip = len(self._prefix) + 1
 
         def on_sample(sample: zenoh.Sample) -> None:
-            receive(str(sample.key_expr)[skip:], _marked(sample))
+            if (payload := self._whole(sample)) is not None:
+                receive(str(sample.key_expr)[skip:], payload)
 
         self._kept.append(self._session.declare_subscriber(f"{self._prefix}/{key}", on_sample))
 
@@ -137,7 +145,7 @@ class Session:
 
         def take() -> Marked | None:
             sample = subscriber.try_recv()
-            return None if sample is None else _marked(sample)
+            return None if sample is None else self._whole(sample)
 
         return take
 
@@ -149,7 +157,8 @@ class Session:
             with query:
                 answers = answer()
                 for index, payload in enumerate(answers):
-                    query.reply(f"{whole}/{index}-{len(answers)}", payload, attachment=self.mark)
+                    each = f"{whole}/{index}-{len(answers)}"
+                    query.reply(each, payload, attachment=self._seal(each, payload))
 
         self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
 
@@ -167,8 +176,7 @@ class Session:
             if reply.ok is None:
                 continue
             index, _, total = str(reply.ok.key_expr).rsplit("/", 1)[1].partition("-")
-            if index.isdecimal() and total.isdecimal():
-                payload = _marked(reply.ok)
+            if index.isdecimal() and total.isdecimal() and (payload := self._whole(reply.ok)) is not None:
                 answers.setdefault(payload.writer, {})[int(index)] = payload
                 counts[payload.writer] = int(total)
         whole = [writer for writer in sorted(answers) if len(answers[writer]) == counts[writer]]
@@ -183,7 +191,8 @@ class Session:
                 number = str(query.key_expr).rsplit("/", 1)[1]
                 payload = answer(int(number)) if number.isdecimal() else None
                 if payload is not None:
-                    query.reply(f"{whole}/{number}", payload)
+                    each = f"{whole}/{number}"
+                    query.reply(each, payload, attachment=self._seal(each, payload))
 
         self._kept.append(self._session.declare_queryable(f"{whole}/*", on_query))
 
@@ -194,25 +203,37 @@ class Session:
             BusError: who may have it did not answer in time.
         """
         for reply in self._session.get(f"{self._prefix}/{key}/{number}", timeout=timeout_s):
-            if reply.ok is None:
-                raise BusError(f"no answer on {key}/{number} in {timeout_s:g} s")
-            return reply.ok.payload.to_bytes()
+            if reply.ok is None or (payload := self._whole(reply.ok)) is None:
+                raise BusError(f"no answer on {key}/{number} in {timeout_s:g} s, or a damaged one")
+            return payload
         return None
 
     def close(self) -> None:
         """Leave the bus."""
         self._session.close()
 
+    def _seal(self, key: str, payload: bytes) -> bytes:
+        """What goes with bytes: this session's mark, and a checksum of whole key and bytes."""
+        return self.mark + _sum(key, payload)
+
+    def _whole(self, sample: zenoh.Sample) -> Marked | None:
+        """The bytes of a sample with their writer's mark; None, and counted, when they are not what it sent."""
+        payload = Marked(sample.payload.to_bytes())
+        if sample.attachment is not None:
+            seal = sample.attachment.to_bytes()
+            if seal[-_SUM_BYTES:] != _sum(str(sample.key_expr), payload):
+                self.damaged += 1
+                return None
+            payload.writer = seal[:-_SUM_BYTES][:_MARK_BYTES]
+        return payload
+
 
 def _mark_of(session: zenoh.ZenohId) -> bytes:
     return str(session).encode()
 
 
-def _marked(sample: zenoh.Sample) -> Marked:
-    marked = Marked(sample.payload.to_bytes())
-    if sample.attachment is not None:
-        marked.writer = sample.attachment.to_bytes()[:_MARK_BYTES]
-    return marked
+def _sum(key: str, payload: bytes) -> bytes:
+    return crc32(payload, crc32(key.encode())).to_bytes(_SUM_BYTES, "big")
 
 
 def _no_session(where: str, namespace: str, network: Network, hub: bool, error: str) -> str:

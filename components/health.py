@@ -97,5 +97,7 @@ class Health:
     def _words(self) -> str:
         """All there is to say, the gravest first."""
         bad = f"dropped {self._buffers.last_error}" if self._buffers.bad else ""
-        said = self.reason, self._component.trouble, self._component.untuned, self.lost, bad, self.note
+        lost = self._session.damaged
+        damaged = f"{lost} messages came damaged over a link that broke, and were dropped" if lost else ""
+        said = self.reason, self._component.trouble, self._component.untuned, self.lost, bad, damaged, self.note
         return "; ".join(words for words in said if words)

@@ -1,9 +1,11 @@
-"""What is served is answered whole, in order, or not at all."""
+"""What is published or served arrives as it was sent, whole and in order, or not at all."""
 
 import os
+from threading import Event
 
 import pytest
 
+from surefoot.bus.errors import BusError
 from surefoot.bus.session import Session
 
 
@@ -38,3 +40,34 @@ def test_half_an_answer_is_none(sessions):
 
     hub._kept.append(hub._session.declare_queryable(f"{prefix}/*", answer))
     assert client.ask("half") == []
+
+
+def test_what_is_not_as_it_was_sent_is_dropped_and_counted(sessions):
+    hub, client = sessions
+    heard, last = [], Event()
+
+    def hear(key, payload):
+        heard.append(payload)
+        if payload == b"last":
+            last.set()
+
+    client.subscribe("some", hear)
+    newest = client.newest("other")
+    hub.serve("served", lambda: [b"answer"])
+    hub.serve_each("numbered", lambda number: b"answer")
+    assert client.ask("served") == [b"answer"] and client.ask_each("numbered", 7) == b"answer"
+    seal = hub._seal
+    hub._seal = lambda key, payload: seal(key, payload[:-1])  # the link has added a byte
+    hub.put("some", b"damaged")
+    hub.put("other", b"damaged")
+    assert client.ask("served") == []
+    with pytest.raises(BusError, match="damaged"):
+        client.ask_each("numbered", 7)
+    hub._seal = lambda key, payload: seal(f"{key}s", payload)  # it was said under another key
+    hub.put("some", b"astray")
+    hub._seal = seal
+    hub.put("some", b"last")
+    assert last.wait(30.0)
+    assert heard == [b"last"] and heard[0].writer == hub.mark
+    assert newest() is None
+    assert client.damaged == 5

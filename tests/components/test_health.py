@@ -11,6 +11,8 @@ from surefoot.config.deployment import Deployment
 
 
 class Bus:
+    damaged = 0
+
     def put(self, key, payload, lossless=True):
         self.last = decode(ProcessStatus, payload)
 
@@ -35,5 +37,7 @@ def test_the_trouble_of_the_last_step_is_told_until_a_step_goes_well():
     words = ("time waits for wbc", "riccati: node 3", "state/estimate: message 3 of 4 did not arrive")
     assert told() == "; ".join((*words, "dropped fsm/reference: not msgpack"))
     health.reason = health.lost = worker.trouble = ""
-    buffers.bad = 0
+    buffers.bad, bus.damaged = 0, 2
+    assert told().startswith("2 messages came damaged")
+    bus.damaged = 0
     assert told() == ""

@@ -35,7 +35,7 @@ class Bus:
         deployment: what io says it runs.
     """
 
-    asks, place, deployment = (), None, None
+    asks, place, deployment, damaged = (), None, None, 0
 
     def __init__(self, *args, **kwargs):
         self.sent, self.open, self.heard = [], True, {}

@@ -18,6 +18,8 @@ from surefoot.config.deployment import Deployment, Run
 class Session:
     """In place of the bus: nobody keeps anything."""
 
+    damaged = 0
+
     def ask(self, key):
         return []
 
