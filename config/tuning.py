@@ -27,6 +27,11 @@ class Setting:
     hint: Any
     limits: Within | None
 
+    @property
+    def allowed(self) -> str:
+        """The limits in words."""
+        return "true or false" if self.limits is None else f"{self.limits.least:g} to {self.limits.most:g}"
+
 
 @cache
 def tunable_settings() -> dict[str, Setting]:

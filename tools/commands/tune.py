@@ -55,7 +55,7 @@ def _run(call: argparse.Namespace) -> int:
             return _change(session, call.key, call.value)
         from surefoot.tools.teleop.tuned_run import TunedRun
 
-        run = TunedRun(session)
+        run = TunedRun.of(session)
     finally:
         session.close()
     if call.save is not None:
@@ -94,10 +94,5 @@ def _list(run: TunedRun, as_json: bool) -> None:
 
 
 def _save(run: TunedRun, path: Path) -> None:
-    from surefoot.config.deployment_file import deployment_text
-    from surefoot.config.tuning import shown, value_of
-
-    changed = [assignment.partition("=")[0] for assignment in run.assignments]
-    remarks = {key: f"tuned; the run began with {shown(value_of(run.begun, key))}" for key in changed}
-    path.write_text(f"# Written by `surefoot tune --save`.\n{deployment_text(run.now, remarks)}")
-    print(f"{path}: {len(changed)} settings changed in the run; surefoot run {path} begins with them")
+    path.write_text(run.file_text())
+    print(f"{path}: {len(run.changed)} settings changed in the run; surefoot run {path} begins with them")

@@ -35,7 +35,7 @@ def tuning_table(rows: list[dict[str, Any]]) -> Table:
     for column in ("setting", "value", "allowed", "the run began with"):
         table.add_column(column, no_wrap=True)
     for row in rows:
-        allowed = "true or false" if row["least"] is None else f"{row['least']:g} to {row['most']:g}"
+        allowed = tunable_settings()[row["key"]].allowed
         begun = shown(_tuple(row["begun"])) if row["changed"] else ""
         style = "bold cyan" if row["changed"] else ""
         table.add_row(row["key"], shown(_tuple(row["value"])), allowed, begun, style=style)
