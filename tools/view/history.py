@@ -9,12 +9,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from surefoot.bus.message import Message
-from surefoot.bus.messages import FootholdRegions, FootholdRequest, FsmEvent, OperatorCommand, Plan
+from surefoot.bus.messages import FootholdRegions, FootholdRequest, FsmEvent, OperatorCommand, Plan, Tuning
 from surefoot.components.fsm.course import AROUND_POINTS
 from surefoot.components.fsm.state import State
 from surefoot.tools.view.palette import Verdict
 
-RARE = ("fsm/event", "foothold/request", "foothold/regions", "trajopt/plan", "operator/command")
+RARE = (
+    *("fsm/event", "foothold/request", "foothold/regions", "trajopt/plan"),
+    *("operator/command", "operator/tuning"),
+)
 """Topics of which every message counts."""
 
 _SAME_PLACE_M = 0.012  # a foot that comes back stands that near; points around a foothold are twice as far
@@ -77,6 +80,7 @@ class History:
         touch_W: (3,) where the foot of that leg has met the ground; None while it is in the air.
         events: the newest, oldest first.
         command: what the robot was told last.
+        tunings: the newest changes of the settings, oldest first.
         count: of messages that were told.
     """
 
@@ -89,6 +93,7 @@ class History:
         self.touch_W: np.ndarray | None = None
         self.events: deque[FsmEvent] = deque(maxlen=_EVENTS)
         self.command = ""
+        self.tunings: deque[Tuning] = deque(maxlen=_EVENTS)
         self.count = 0
         self._number = 0
         self._stands: Spot | None = None
@@ -109,6 +114,8 @@ class History:
                     self._propose(message.footholds_WF[self.leg])
             case OperatorCommand():
                 self.command = message.command
+            case Tuning() if message.assignment:
+                self.tunings.append(message)
 
     def _note_event(self, event: FsmEvent) -> None:
         self.events.append(event)

@@ -13,6 +13,7 @@ from surefoot.tools.view import panel_text
 from surefoot.tools.view.bus_source import BusSource
 from surefoot.tools.view.heard import Heard
 from surefoot.tools.view.scene import LAYERS
+from surefoot.tools.view.settings_watch import SettingsWatch
 from surefoot.tools.view.stage import Stage
 from surefoot.tools.view.teleop_panel import TeleopPanel
 
@@ -39,6 +40,7 @@ class Panel:
         self.follows = True
         self._stage = stage
         self._written = 0.0
+        self._settings = SettingsWatch()
         self._alarm = gui.add_html("")
         self._machine = self._folder(gui, "State")
         self._press = self._folder(gui, "Probing: asked and held")
@@ -75,14 +77,17 @@ class Panel:
         if now - self._written < _WRITE_S:
             return
         self._written = now
-        self._alarm.content = panel_text.alarm(
-            words or (why_nothing_moves(picture) if picture is not None else "")
-        )
+        tunings = heard.history.tunings
+        recorded = tunings[-1].assignment if tunings else ()
+        self._settings.follow(deployment, picture.tuned if picture is not None else recorded)
+        run = self._settings.run
+        why = why_nothing_moves(picture) if picture is not None else ""
+        self._alarm.content = panel_text.alarm(words or self._settings.trouble or why)
         self._processes.content = panel_text.processes(picture)
-        if deployment is None:
+        if run is None:
             return
-        self._machine.content = panel_text.machine(heard, deployment, margin_m, pace)
-        self._press.content = panel_text.press(heard, deployment)
+        self._machine.content = panel_text.machine(heard, run.now, margin_m, pace)
+        self._press.content = panel_text.press(heard, run.now)
         self._feet.content = panel_text.feet(heard)
         self._candidates.content = panel_text.candidates(heard)
         self._events.content = panel_text.events(heard)

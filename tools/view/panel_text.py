@@ -11,9 +11,11 @@ from surefoot.bus.messages import LegStatus, ProcessStatus
 from surefoot.components.fsm.course import AROUND_POINTS
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import LEGS
+from surefoot.config.tuning import shown, value_of
 from surefoot.tools.diagnosis import troubles
 from surefoot.tools.picture import RATE_BAND, Picture
 from surefoot.tools.status_screen import TOLD, event_line
+from surefoot.tools.teleop.tuned_run import TunedRun
 from surefoot.tools.view.drawing import Rgb
 from surefoot.tools.view.forces import asked_n
 from surefoot.tools.view.heard import Heard
@@ -154,9 +156,21 @@ def processes(picture: Picture | None) -> str:
 
 
 def events(heard: Heard) -> str:
-    """The last ones that are worth a line, the newest on top."""
-    told = [event_line(event) for event in heard.history.events if event.kind in TOLD][-_EVENTS:]
-    return _block("<br>".join(escape(line) for line in reversed(told)) or "-")
+    """The last ones that are worth a line, changes of the settings among them, the newest on top."""
+    history = heard.history
+    told = [(event.t, event_line(event)) for event in history.events if event.kind in TOLD]
+    told += [(each.t, f"{each.t:8.2f} s  tuned: {each.assignment[-1]}") for each in history.tunings]
+    newest = sorted(told, key=lambda line: line[0])[-_EVENTS:]
+    return _block("<br>".join(escape(line) for _, line in reversed(newest)) or "-")
+
+
+def changed(run: TunedRun) -> str:
+    """What differs from the deployment that a run began with."""
+    lines = [
+        f"<b>{escape(path)}</b> {shown(value_of(run.now, path))}, was {shown(value_of(run.begun, path))}"
+        for path in run.changed
+    ]
+    return _block("<br>".join(lines) or _colored("as the run began", _DIM))
 
 
 def legend() -> str:

@@ -5,8 +5,10 @@ from dataclasses import replace
 import pytest
 import scenes
 
-from surefoot.bus.messages import FsmEvent, HardwareState, ProcessStatus
+from surefoot.bus.messages import FsmEvent, HardwareState, ProcessStatus, Tuning
+from surefoot.config.deployment import Deployment
 from surefoot.tools.picture import Picture
+from surefoot.tools.teleop.tuned_run import TunedRun
 from surefoot.tools.view import panel_text
 from surefoot.tools.view.heard import Heard
 from surefoot.tools.view.recording_source import RecordingSource
@@ -67,3 +69,16 @@ def test_processes_tell_what_is_the_matter():
     text = panel_text.processes(picture)
     assert "99/100" in text and "mpc: riccati: node 3" in text and "absent" in text
     assert "does not hold" in panel_text.processes(None)
+
+
+def test_a_change_of_the_settings_is_told_among_the_events():
+    heard = Heard()
+    heard.history.note(FsmEvent(t=1.0, kind="accepted", reason="it held"))
+    heard.history.note(Tuning(t=2.0, assignment=("wbc.kd=21.0", "wbc.kp=90.0")))
+    newest, before = panel_text.events(heard).split("<br>")
+    assert "2.00 s  tuned: wbc.kp=90.0" in newest and "accepted: it held" in before
+
+
+def test_what_differs_from_the_runs_beginning_is_told_with_what_it_was():
+    text = panel_text.changed(TunedRun(Deployment(), ("wbc.kp=90.0", "wbc.kd=20.0")))
+    assert "<b>wbc.kp</b> 90.0, was 100.0" in text and "wbc.kd" not in text
