@@ -18,7 +18,8 @@ footholds with what was found of them, forces asked and measured, support polygo
 
 The view is a process of its own. It keeps of each stream the newest message, draws ten times a second with the
 lowest priority, and may be closed, or killed, at any time: the robot does not notice. When a run ends, its last
-picture stays and the next run is shown as soon as it is there. Buttons beside the picture command a running robot.
+picture stays and the next run is shown as soon as it is there. Beside the picture a running robot is commanded,
+and its settings are tuned.
 
 The page is served to this machine alone. From another one: ssh -L 8080:127.0.0.1:8080 ROBOT
 

@@ -16,6 +16,7 @@ from surefoot.tools.view.scene import LAYERS
 from surefoot.tools.view.settings_watch import SettingsWatch
 from surefoot.tools.view.stage import Stage
 from surefoot.tools.view.teleop_panel import TeleopPanel
+from surefoot.tools.view.tuning_panel import TuningPanel
 
 _WRITE_S = 0.25
 
@@ -44,8 +45,10 @@ class Panel:
         self._alarm = gui.add_html("")
         self._machine = self._folder(gui, "State")
         self._press = self._folder(gui, "Probing: asked and held")
+        self._tuning: TuningPanel | None = None
         if running is not None:
             TeleopPanel(gui, running)
+            self._tuning = TuningPanel(gui, running)
         self._candidates = self._folder(gui, "Candidates")
         self._feet = self._folder(gui, "Feet")
         self._processes = self._folder(gui, "Processes", shut=True)
@@ -84,6 +87,8 @@ class Panel:
         why = why_nothing_moves(picture) if picture is not None else ""
         self._alarm.content = panel_text.alarm(words or self._settings.trouble or why)
         self._processes.content = panel_text.processes(picture)
+        if self._tuning is not None:
+            self._tuning.write(run)
         if run is None:
             return
         self._machine.content = panel_text.machine(heard, run.now, margin_m, pace)

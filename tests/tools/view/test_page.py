@@ -51,6 +51,7 @@ def test_the_page_shows_the_robot_and_what_it_is_at_and_a_browser_that_leaves_en
     tab.goto(page.url)
     tab.get_by_text("PROBE", exact=True).wait_for()
     tab.get_by_text("displacement").wait_for()
+    assert tab.get_by_text("Tuning", exact=True).count() == 0  # a recording cannot be tuned
     wait(lambda: tab.screenshot(clip=PICTURE) == tab.screenshot(clip=PICTURE))  # all that comes in has come in
     before = tab.screenshot(clip=PICTURE, path=tmp_path / "before.png")
     tab.get_by_role("button", name="play").click()
