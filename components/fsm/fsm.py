@@ -15,7 +15,16 @@ from surefoot.components.fsm.posture import Posture, posture_reference
 from surefoot.components.fsm.probing_cycle import ProbingCycle
 from surefoot.components.fsm.state import State
 from surefoot.components.fsm.walk_commands import end, obey, turn_to
-from surefoot.components.fsm.words import WALK_WORDS, Answer, Command, NoCommand, read_command, refused, taken
+from surefoot.components.fsm.words import (
+    WALK_WORDS,
+    Answer,
+    Command,
+    NoCommand,
+    is_direction,
+    read_command,
+    refused,
+    taken,
+)
 from surefoot.components.memory import Memory
 from surefoot.components.robot_model import build_model
 from surefoot.components.robot_model.rotation import matrix_of, rpy_of
@@ -129,6 +138,10 @@ class Fsm(Component):
         if word == "cut":
             self._damp(_CUT)
             return taken("no torque before damp is said")
+        if word == "halt" and is_direction(self._wish):
+            self._wish = ""
+            if self._posture is not None:
+                return taken("the robot does not set off")
         if now is None:
             return self._wait(word, asked)
         if word == "hold":
@@ -143,7 +156,7 @@ class Fsm(Component):
             return self._go(command, now)
         if self._posture is not None:
             return refused(f"{word}: the robot does not walk in {self._posture}; give a direction first")
-        if word in ("halt", "pause"):
+        if word == "pause" and is_direction(self._wish):
             self._wish = ""
         return obey(self._cycle, word, now)
 

@@ -32,17 +32,18 @@ class Driver:
         question: waits for the next key; empty when none does.
     """
 
-    def __init__(self, say: Callable[[str], Answer], paused: Callable[[], bool]):
+    def __init__(self, ask: Callable[[str], Callable[[], Answer]], paused: Callable[[], bool]):
         """For one robot.
 
         Args:
-            say: says a command and waits for its answer.
+            ask: says a command; what it returns waits for the answer.
             paused: whether the walk rests and can go on, for the one key that says both.
         """
-        self._say, self._paused = say, paused
+        self._ask, self._paused = ask, paused
         self.leaves, self.question = False, ""
         self._lock = Lock()
         self._said: list[Said] = []
+        self._last = ""
 
     @property
     def said(self) -> Sequence[Said]:
@@ -50,33 +51,44 @@ class Driver:
         with self._lock:
             return self._said.copy()
 
+    @property
+    def waits(self) -> bool:
+        """Whether an answer is still to come."""
+        with self._lock:
+            return any(answer is None for _, answer in self._said)
+
     def press(self, key: str) -> None:
         """A key; one that is held says its command again only when that was answered."""
         key = ARROWS.get(key, key)
-        if self.question:
-            self.question = ""
+        words = KEYS[key].words if key in KEYS else ""
+        asked, self.question = self.question, ""
+        if words == "stop":
+            self.say(words)  # whatever was asked before
+        elif asked:
             if key == SURE:
-                self._command("cut")
+                self.say("cut")
         elif key == LEAVE:
             self.leaves = True
-        elif key in KEYS:
-            words = KEYS[key].words
-            if words == "cut":
-                self.question = SURE_TO_CUT
-            else:
-                self._command("resume" if words == "pause" and self._paused() else words)
+        elif words == "cut":
+            self.question = SURE_TO_CUT
+        elif words:
+            self.say("resume" if words == "pause" and self._paused() else words)
 
-    def _command(self, words: str) -> None:
-        """In a thread of its own: no answer keeps the next key, which may be a stop."""
+    def say(self, words: str) -> None:
+        """Say a command at once, in the order of the calls; no answer keeps the next one, which may be a stop.
+
+        What was said last and is not answered yet is not said again.
+        """
         with self._lock:
-            if (words, None) in self._said:
+            if words == self._last and (words, None) in self._said:
                 return
+            self._last = words
             self._said.append((words, None))
             del self._said[:-_KEEPS]
-        Thread(target=self._wait, args=(words,), daemon=True).start()
+        Thread(target=self._wait, args=(words, self._ask(words)), daemon=True).start()
 
-    def _wait(self, words: str) -> None:
-        answer = self._say(words)
+    def _wait(self, words: str, answered: Callable[[], Answer]) -> None:
+        answer = answered()
         with self._lock:
             if (words, None) in self._said:
                 self._said.remove((words, None))
@@ -90,7 +102,7 @@ class _Cabin:
         self._session = connect()
         self.watch = StackWatch(connect)
         self.remote = Remote(self._session)
-        self.driver = Driver(self.remote.say, lambda: self._state == ("STOPPED", PAUSED))
+        self.driver = Driver(self.remote.ask, lambda: self._state == ("STOPPED", PAUSED))
         self._candidates, self._events = Candidates(), 0
         fsm = ask_deployment(self._session).get("fsm", {})
         self._alternatives: int | None = fsm.get("alternatives")

@@ -45,7 +45,8 @@ class Remote:
         Args:
             session: of the bus.
             patience_s: how long an answer is waited for [s].
-            beats: be the operator's heartbeat; false where the operator has another one.
+            beats: be the operator's heartbeat; false where the operator has another one, or who holds this remote
+                beats himself.
 
         Raises:
             BusError: the stack does not say what is running.
@@ -125,10 +126,16 @@ class Remote:
 
     def say(self, words: str) -> Answer:
         """Say a command and wait for what becomes of it."""
+        return self.ask(words)()
+
+    def ask(self, words: str) -> Callable[[], Answer]:
+        """Say a command; what is returned waits for what becomes of it."""
         with self._arrived:
             number, refusal = _next(self._commands), self._refused
         self._session.put(REQUEST, words.encode())
-        return self._await(lambda: self._refusal_of(words, refusal) or self._answer_to(words, number), words)
+        return lambda: self._await(
+            lambda: self._refusal_of(words, refusal) or self._answer_to(words, number), words
+        )
 
     def tune(self, key: str, value: float | bool | str | Sequence[float]) -> Answer:
         """Change a setting that is marked as tunable; taken between two steps of whoever goes by it.
@@ -142,6 +149,10 @@ class Remote:
             number, refusal = _next(self._tunings), self._refused
         self._session.put(TUNE, assignment.encode())
         return self._await(lambda: self._refusal_of(assignment, refusal) or self._tuned(key, number), assignment)
+
+    def beat(self) -> None:
+        """One beat, of who knows himself when the operator is there."""
+        self._session.put(BEAT, b"", lossless=False)
 
     def close(self) -> None:
         """End the heartbeat: a robot that asks for one sits down."""
@@ -206,12 +217,12 @@ class Remote:
     def _begin_to_beat(self, settings: Operator) -> None:
         self.heartbeat_s = settings.heartbeat_s
         if self.heartbeat_s:
-            self._session.put(BEAT, b"", lossless=False)
+            self.beat()
             Thread(target=self._beat, args=(settings.beat_s,), daemon=True).start()
 
     def _beat(self, every_s: float) -> None:
         while not self._closed.wait(every_s):
-            self._session.put(BEAT, b"", lossless=False)
+            self.beat()
 
 
 def _next(messages: Sequence[Message]) -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 import time
 from collections.abc import Callable
 from contextlib import redirect_stdout
@@ -14,7 +13,7 @@ import viser
 from viser.infra import WebsockClientConnection
 
 from surefoot.config.deployment import Deployment
-from surefoot.tools.commands.call import CallError
+from surefoot.tools.loopback import HOST, NAMES, listen
 from surefoot.tools.view.bus_source import BusSource
 from surefoot.tools.view.panel import Panel
 from surefoot.tools.view.playback_controls import PlaybackControls
@@ -22,9 +21,6 @@ from surefoot.tools.view.recording_source import RecordingSource
 from surefoot.tools.view.scene import LAYERS, Scene
 from surefoot.tools.view.source import Source
 from surefoot.tools.view.stage import Stage
-
-HOST = "127.0.0.1"
-"""The page is for this machine only: who can reach it needs no password."""
 
 DRAW_HZ = 10.0
 """Pictures a second: enough to follow a step, and a few per cent of a core."""
@@ -36,17 +32,9 @@ def check_port(port: int) -> None:
     """See that a port is free before anything is started; 0 is any.
 
     Raises:
-        CallError: it is taken.
+        CallError: it is taken, or is none.
     """
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((HOST, port))
-        except OSError as error:
-            raise CallError(
-                f"port {port} on {HOST} cannot be used ({error.strerror}): another view may run there; choose "
-                "another one, or 0 for any that is free"
-            ) from None
+    listen(port).close()
 
 
 def _refuse_strangers(server: viser.ViserServer) -> None:
@@ -56,7 +44,7 @@ def _refuse_strangers(server: viser.ViserServer) -> None:
     async def look_at(client: WebsockClientConnection) -> None:
         connection = sockets._live_connections[client.client_id]
         origin = connection.request.headers.get("Origin") if connection.request is not None else None
-        if origin is not None and urlsplit(origin).hostname not in (HOST, "localhost"):
+        if origin is not None and urlsplit(origin).hostname not in NAMES:
             await connection.close(1008, "this page is for this machine only")
 
     sockets.on_client_connect(look_at)

@@ -305,3 +305,21 @@ def test_every_command_is_answered_whatever_the_robot_does():
     for word in COMMANDS:
         robot.run(0.5)
         assert robot.tell("direction 0 1" if word == "direction" else word).words
+
+
+def test_a_robot_that_gets_up_to_walk_and_is_halted_stands():
+    robot = Walker(command="forward")
+    robot.come_to("STAND_UP")
+    assert robot.tell("halt").words == "the robot does not set off"
+    robot.come_to("STAND")
+    robot.run(1.0)
+    assert robot.state == "STAND"
+
+
+@pytest.mark.parametrize("word", ["halt", "pause"])
+def test_a_robot_that_was_told_to_sit_is_not_kept_from_it(word):
+    robot = walker_in("DETECT_CONTACT")
+    robot.tell("sit")
+    assert not robot.tell(word).taken
+    robot.come_to("DAMP")
+    assert "sitting" in robot.reference.reason
