@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from surefoot.bus.messages import JointCommand, OperatorCommand
+from surefoot.components.fsm.words import WALK_WORDS
 from surefoot.hw.gate.gate import Gate
 from surefoot.hw.robot_interface import Stop
 
@@ -38,10 +39,10 @@ class OperatorHand:
             self._gate.cut(message.why or "by command")
         elif message.word == "damp":
             self._gate.free()
-        if message.word != "sit":
+        if message.word == "sit":
+            self._sits_since = t if self._sits_since is None else self._sits_since
+        elif message.word not in WALK_WORDS:  # those do not take a sit back
             self._sits_since = None
-        elif self._sits_since is None:
-            self._sits_since = t
 
     def watch(self, command: JointCommand | None, t: float) -> None:
         """Look whether the robot is still driven at time `t` [s] though it should sit by now."""

@@ -47,6 +47,14 @@ def test_one_that_is_still_driven_after_its_time_is_damped_once(hand):
     assert hand._gate.told == [("damp", "told to sit 5 s ago and still driven: is fsm running?")]
 
 
+@pytest.mark.parametrize("then", ["halt", "pause", "skip"])
+def test_a_word_that_does_not_take_the_sit_back_gives_it_no_more_time(hand, then):
+    hear(hand, "sit", t=1.0)
+    hear(hand, then, t=4.0)
+    hand.watch(DRIVES, 6.0)
+    assert hand._gate.told == [("damp", "told to sit 5 s ago and still driven: is fsm running?")]
+
+
 @pytest.mark.parametrize("then", ["stand", "forward", "stop"])
 def test_one_that_sits_or_is_told_otherwise_is_not(hand, then):
     hear(hand, "sit")
