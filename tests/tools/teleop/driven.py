@@ -2,6 +2,7 @@
 
 import os
 import time
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import count
 from threading import Event, Thread
@@ -16,6 +17,7 @@ from surefoot.components.operator_desk import OperatorDesk
 from surefoot.config.deployment import Deployment
 from surefoot.config.fsm import Fsm as Settings
 from surefoot.config.operator import Operator
+from surefoot.tools.teleop.drive_page import DrivePage
 
 _numbers = count()
 PATIENCE_S = 180.0  # of wall time: other jobs share the cores, and no test is decided by it
@@ -106,3 +108,20 @@ class Driven:
             if told or self.robot.state != self._hold_in:
                 self.robot.tick()
             time.sleep(0.001)
+
+
+@contextmanager
+def served(silent_s=PATIENCE_S, **settings):
+    """A stack that stands, and the page that drives it."""
+    stack = Driven(**settings)
+    stack.come_to("STAND")
+    page, over = DrivePage(stack.join, port=0, silent_s=silent_s), Event()
+    thread = Thread(target=page.run, args=(over.is_set,))
+    thread.start()
+    try:
+        yield stack, page
+    finally:
+        over.set()
+        thread.join()
+        page.close()
+        stack.close()

@@ -1,11 +1,9 @@
 """The page of `surefoot drive --browser` in a real browser, with a gamepad that the test holds."""
 
-import threading
+from contextlib import ExitStack
 
 import pytest
-from driven import PATIENCE_S, Driven
-
-from surefoot.tools.teleop.drive_page import DrivePage
+from driven import PATIENCE_S, served
 
 GAMEPAD = """
 window.hold = (x, y, ...down) => { window.held = {
@@ -25,27 +23,17 @@ B = 1
 @pytest.fixture
 def driven(tab):
     """Makes a stack, and the page that drives it in a tab."""
-    made = []
+    with ExitStack() as made:
 
-    def make(**settings):
-        stack = Driven(**settings)
-        stack.come_to("STAND")
-        page, over = DrivePage(stack.join, port=0, silent_s=PATIENCE_S), threading.Event()
-        thread = threading.Thread(target=page.run, args=(over.is_set,))
-        thread.start()
-        made.append((stack, page, thread, over))
-        tab.add_init_script(GAMEPAD)
-        tab.goto(page.url)
-        tab.get_by_text("connected to").wait_for()
-        return stack, page
+        def make(**settings):
+            stack, page = made.enter_context(served(**settings))
+            tab.add_init_script(GAMEPAD)
+            tab.goto(page.url)
+            tab.get_by_text("connected to").wait_for()
+            return stack, page
 
-    yield make
-    tab.close()
-    for stack, page, thread, over in made:
-        over.set()
-        thread.join()
-        page.close()
-        stack.close()
+        yield make
+        tab.close()
 
 
 def test_the_gamepad_the_keys_and_the_buttons_drive_and_the_page_shows_the_answers(driven, tab, tmp_path):

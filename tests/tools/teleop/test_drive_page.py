@@ -3,18 +3,16 @@
 import json
 import subprocess
 import sys
-import threading
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from http.client import HTTPConnection
 
 import pytest
-from driven import PATIENCE_S, Driven
+from driven import PATIENCE_S, Driven, served
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 from surefoot.tools.cli import main
 from surefoot.tools.loopback import HOST, listen
-from surefoot.tools.teleop.drive_page import DrivePage
 
 AHEAD, MIDDLE = {"stick": [0.0, -1.0], "down": []}, {"stick": [0.0, 0.0], "down": []}
 
@@ -22,23 +20,8 @@ AHEAD, MIDDLE = {"stick": [0.0, -1.0], "down": []}, {"stick": [0.0, 0.0], "down"
 @pytest.fixture
 def serve():
     """Makes a stack and a page that drives it."""
-    made = []
-
-    def make(silent_s=PATIENCE_S, **settings):
-        stack = Driven(**settings)
-        stack.come_to("STAND")
-        page, over = DrivePage(stack.join, port=0, silent_s=silent_s), threading.Event()
-        thread = threading.Thread(target=page.run, args=(over.is_set,))
-        thread.start()
-        made.append((stack, page, thread, over))
-        return stack, page
-
-    yield make
-    for stack, page, thread, over in made:
-        over.set()
-        thread.join()
-        page.close()
-        stack.close()
+    with ExitStack() as made:
+        yield lambda *args, **settings: made.enter_context(served(*args, **settings))
 
 
 @contextmanager
