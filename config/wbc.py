@@ -32,7 +32,7 @@ class Wbc:
     acceleration_weight: Annotated[float, Within(1e-8, 1.0)] = 1e-4
     stance_kp: Tuned[Stiffness] = 50.0  # a stance foot that has crept is drawn back [1/s^2]
     stance_kd: Tuned[Damping] = 20.0  # a stance foot that creeps is braked [1/s]
-    friction: Friction = 0.35  # pyramid inside the paper's cone of 0.5
+    friction: Friction = 0.35  # pyramid about the vertical, inside the paper's cone of 0.5
     force_min_n: LeastForce = 10.0  # a lighter stance foot creeps: joint friction alone is worth 3 N at the foot
     force_max_n: MostForce = 240.0
     joint_kp: Tuned[Annotated[float, Within(0.0, 2000.0)]] = 30.0  # of swing legs, on the robot [N m/rad]
@@ -49,6 +49,11 @@ class Wbc:
     observer_moment_max: Annotated[float, Within(0.0, 500.0)] = 10.0  # largest external moment it may claim [N m]
     observer_gap_s: Annotated[float, Within(0.005, 1.0)] = 0.02  # after a longer gap between cycles it starts anew
     failures_max: Annotated[int, Within(0, 250)] = 5  # successive QP failures before damping
+
+    @property
+    def patience_s(self) -> float:
+        """How long the robot is held and lowered without the others, before it is damped [s]."""
+        return self.hold_s + self.lower_m / self.lower_speed
 
     def __post_init__(self) -> None:
         ordered(self, "force_min_n", "force_max_n", "no force would do for a foot that stands")

@@ -10,6 +10,7 @@ from surefoot.components.ocp.certified_load import load_limit
 from surefoot.components.ocp.foot_placement import LANDING_SHARE
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
+from surefoot.components.robot_model.rotation import pose_change
 from surefoot.components.robot_model.rotations import matrices_of_rpy
 from surefoot.config.robot import GRAVITY, Robot
 
@@ -95,10 +96,10 @@ class MotionSampler:
 
     @staticmethod
     def _base(reference: MotionReference, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Linear interpolation between two poses, as the paper has it."""
+        """Linear interpolation between two poses, as the paper has it; a heading turns the nearer way."""
         duration = max(reference.base_t1 - reference.base_t0, 1e-6)
         share = _unit((times - reference.base_t0) / duration)[:, None]
-        pose = reference.base_from + share * (reference.base_to - reference.base_from)
+        pose = reference.base_from + share * pose_change(reference.base_from, reference.base_to)
         return pose[:, :3], matrices_of_rpy(pose[:, 3:])
 
     @staticmethod

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asin, atan2, copysign, cos, sin, sqrt
+from math import asin, atan2, copysign, cos, pi, sin, sqrt
 
 import numpy as np
 
@@ -72,6 +72,18 @@ def matrix_of_rpy(rpy: np.ndarray) -> np.ndarray:
     """R = Rz(yaw) Ry(pitch) Rx(roll), (3, 3)."""
     roll, pitch, yaw = np.asarray(rpy).tolist()
     return np.array(rows_of_rpy(cos(roll), cos(pitch), cos(yaw), sin(roll), sin(pitch), sin(yaw)))
+
+
+def nearer_way(change: np.ndarray) -> np.ndarray:
+    """A change of angles [rad] by the nearer way round; one within half a turn stays the same to the bit."""
+    return change - 2.0 * pi * np.round(change / (2.0 * pi))
+
+
+def pose_change(start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """(6,) from one pose x, y, z [m], roll, pitch, yaw [rad] to another, turning the nearer way."""
+    change = end - start
+    change[3:] = nearer_way(change[3:])
+    return change
 
 
 def rows_of_rpy(cr, cp, cy, sr, sp, sy) -> tuple:

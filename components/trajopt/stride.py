@@ -10,6 +10,7 @@ from surefoot.components.ocp.certified_load import load_limit
 from surefoot.components.ocp.foot_placement import LANDING_SHARE
 from surefoot.components.ocp.node_reference import NodeReference
 from surefoot.components.robot_model import LegKinematics
+from surefoot.components.robot_model.rotation import pose_change
 from surefoot.components.robot_model.rotations import matrices_of_rpy
 from surefoot.config.fsm import Fsm
 from surefoot.config.robot import GRAVITY, Robot
@@ -60,7 +61,7 @@ class Stride:
             certified_n[after, leg] = 0.0  # nobody has tried the new foothold yet
             region_active[lands, leg] = request.region_active[leg]
         share = (t / t[-1])[:, None]
-        pose = base_now + share * (request.base_target - base_now)
+        pose = base_now + share * pose_change(base_now, request.base_target)
         R_WB = matrices_of_rpy(pose[:, 3:])
         force_W = np.zeros((nodes, 4, 3))
         force_W[..., 2] = contact * (self._weight / contact.sum(axis=1))[:, None]

@@ -8,7 +8,7 @@ import numpy as np
 
 from surefoot.bus.messages import Policy
 from surefoot.components.memory import Memory
-from surefoot.components.robot_model.rotation import exp_rotation, log_rotation, matrix_of_rpy
+from surefoot.components.robot_model.rotation import exp_rotation, log_rotation, matrix_of_rpy, nearer_way
 from surefoot.config.robot import GRAVITY
 from surefoot.config.wbc import Wbc
 
@@ -60,8 +60,7 @@ class BaseTarget:
     @property
     def lowered(self) -> bool:
         """The base has been lowered as far as it goes: nothing is left but to damp, until the target is reset."""
-        settings = self._settings
-        return self.held_s > settings.hold_s + settings.lower_m / settings.lower_speed
+        return self.held_s > self._settings.patience_s
 
     def at(
         self, t: float, policy: Policy | None, p_WB: np.ndarray, R_WB: np.ndarray, loads_n: np.ndarray
@@ -100,11 +99,13 @@ class BaseTarget:
 
     @staticmethod
     def _of_policy(t: float, policy: Policy) -> Target:
-        """The policy between its nodes."""
+        """The policy between its nodes; from one side of +-pi to the other a heading turns the nearer way."""
         position = (t - policy.t) / policy.dt
         k = min(max(int(position), 0), len(policy.u) - 1)
         share = min(max(position - k, 0.0), 1.0)
-        x = policy.x[k] + share * (policy.x[k + 1] - policy.x[k])
+        change = policy.x[k + 1] - policy.x[k]
+        change[9:12] = nearer_way(change[9:12])
+        x = policy.x[k] + share * change
         R = matrix_of_rpy(x[9:12])
         return Target(x[6:9], R, R @ policy.v[k, :3], R @ policy.v[k, 3:6], policy.u[k, :12].reshape(4, 3))
 

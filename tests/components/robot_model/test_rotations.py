@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.components.robot_model.rotation import matrix_of_rpy
+from surefoot.components.robot_model.rotation import matrix_of_rpy, nearer_way
 from surefoot.components.robot_model.rotations import (
     exp_rotations,
     exp_rotations_and_jacobians,
@@ -36,3 +36,8 @@ def test_roll_pitch_yaw_of_one_and_of_many():
     R = matrices_of_rpy(rpy)
     np.testing.assert_allclose(R, [pin.rpy.rpyToMatrix(*angles) for angles in rpy], atol=1e-15)
     np.testing.assert_allclose(R, [matrix_of_rpy(angles) for angles in rpy], atol=1e-15)
+
+
+def test_a_change_of_angle_goes_the_nearer_way_and_a_small_one_stays_what_it_is_to_the_bit():
+    assert nearer_way(np.array([0.3, -3.1, 0.1 + 0.2])).tolist() == [0.3, -3.1, 0.1 + 0.2]
+    np.testing.assert_allclose(nearer_way(np.array([2.0 * np.pi - 0.02, 0.02 - 2.0 * np.pi])), [-0.02, 0.02])

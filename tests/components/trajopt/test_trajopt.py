@@ -109,6 +109,18 @@ def test_nobody_has_tried_the_foothold_that_a_leg_swings_to():
         assert np.isinf(limits[after, leg]).all()
 
 
+def test_a_heading_that_passes_pi_turns_the_nearer_way():
+    def ahead(yaw):
+        return np.array([*BASE, 0.0, 0.0, yaw])
+
+    R = (
+        Stride(ROBOT, Settings(), Fsm())
+        .sample(replace(REQUEST, base_target=ahead(0.1 - np.pi)), ahead(np.pi))
+        .R_WB
+    )
+    assert (R[:, 0, 0] < np.cos(np.pi - 0.11)).all()
+
+
 def test_blind_the_footholds_are_the_targets_and_the_base_arrives():
     result = plan(0)
     np.testing.assert_array_equal(result.footholds_WF, REQUEST.target_WF)

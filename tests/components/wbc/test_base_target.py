@@ -87,3 +87,10 @@ def test_three_feet_bear_what_is_theirs_and_one_in_the_air_nothing():
 def test_a_foot_does_not_pull():
     loads = static_loads(FEET, np.array([-0.1, 0.1, 0.4]), np.array([True, True, False, True]), WEIGHT)
     assert loads.min() == 0.0 and loads[[0, 1, 3]].min() == 1.0
+
+
+def test_a_heading_that_passes_pi_turns_the_nearer_way():
+    target, turns = BaseTarget(Wbc(), WEIGHT / 9.81), policy(0.0)
+    turns.x[:, 11] = np.where(np.arange(11) % 2, -np.pi + 0.01, np.pi - 0.01)
+    for each in follow(target, lambda t: turns, 0.0, 0.15):
+        assert each.R_WB[0, 0] < np.cos(np.pi - 0.011)
