@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from surefoot.bus.messages import ControlMode, JointCommand, LegStatus, MotionReference, Policy, StateEstimate
+from surefoot.bus.topics import TOPICS
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.components.memory import Memory
@@ -95,7 +96,16 @@ class Wbc(Component):
         return JointCommand(t=t, valid=True, kd=np.full(12, self.deployment.hw.damping_kd), solver=why or "ok")
 
     def _posture(self, t: float, reference: MotionReference) -> JointCommand:
-        """JOINT mode: from one posture to another, at rest at both ends; to the same one with gains that rise."""
+        """JOINT mode: from one posture to another, at rest at both ends; to the same one with gains that rise.
+
+        Without its state machine the robot goes on to that posture, then it is damped as one that balances is.
+        """
+        silent_s = t - reference.t
+        orphaned = (
+            "" if silent_s <= TOPICS["fsm/reference"].stale_after_s else f"no fsm/reference for {silent_s:.1f} s"
+        )
+        if silent_s > self._settings.patience_s:
+            return self._damp(t, f"{orphaned}: is fsm running?")
         duration = max(reference.joint_t1 - reference.joint_t0, 1e-3)
         s = min(max((t - reference.joint_t0) / duration, 0.0), 1.0)
         change = reference.joint_to - reference.joint_from
@@ -108,7 +118,7 @@ class Wbc(Component):
             dq=(30.0 * s * s * (1.0 - s) ** 2 / duration) * change,
             kp=np.full(12, self._settings.posture_kp * stiff),
             kd=np.full(12, kd),
-            solver="ok",
+            solver=orphaned or "ok",
         )
 
     def _balance(

@@ -1,5 +1,7 @@
 """One step of the whole-body controller: what fails is said, and what cannot be reached is not asked for."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from surefoot.bus.messages import ControlMode, LegStatus, MotionReference, Policy, StateEstimate
@@ -93,3 +95,20 @@ def test_a_hold_comes_up_from_damping_and_a_way_between_two_postures_has_its_gai
     assert (up.kp == settings.posture_kp).all() and (up.kd == settings.posture_kd).all()
     assert all((command.q == Q).all() and not command.dq.any() for command in (begun, half, up))
     assert (step(0.0, joint_to=Q + 0.1, **span).kp == settings.posture_kp).all()
+
+
+def test_between_postures_without_a_state_machine_it_goes_on_to_the_posture_then_damps():
+    step, patience_s = Step(), Deployment().wbc.patience_s
+    step(0.0, mode=ControlMode.JOINT, joint_from=Q, joint_to=Q + 0.1, joint_t1=1.0)
+
+    def silent(t):
+        step.inbox.deliver("state/estimate", replace(step.inbox.latest("state/estimate"), t=t))
+        step.wbc.step(t, step.inbox, step.outbox)
+        return step.got[-1]
+
+    assert silent(0.05).solver == "ok"
+    there = silent(patience_s - 0.1)
+    np.testing.assert_allclose(there.q, Q + 0.1)
+    assert there.kp.any() and there.solver == "no fsm/reference for 2.7 s" == step.wbc.trouble
+    damped = silent(patience_s + 0.1)
+    assert not damped.kp.any() and damped.solver == "no fsm/reference for 2.9 s: is fsm running?"
