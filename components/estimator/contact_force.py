@@ -43,7 +43,7 @@ class ContactForce:
             bias: (12,) h of eq. (7) [N m].
 
         Returns:
-            (4, 3) forces [N]. A leg within 1e-3 m^3 of singular keeps a bounded, damped solution.
+            (4, 3) forces [N]; finite on a straight leg too, though nothing is to be made of them there.
         """
         Jt = J_B.transpose(0, 2, 1)
         right = (bias - tau).reshape(4, 3, 1)

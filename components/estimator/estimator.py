@@ -104,8 +104,7 @@ class Estimator(Component):
         stance = contact & ((status == LegStatus.STANCE) | probing)
         rate = np.where(probing, self._settings.probing_rate, self._settings.stance_rate)
         self._filter.update(p_BF, J_B, stance, rate, dt, self._rolling(q, dq))
-        damped = state.damping or (reference is not None and reference.mode == ControlMode.DAMP)
-        if damped and not stance.any() and self._lies_still(state):
+        if (state.damping or _at_rest(reference)) and not stance.any() and self._lies_still(state):
             self._filter.rest()
         healthy = self._guard(state, p_BF)
         self._contact_WF[contact] = self._feet(p_BF)[contact]
@@ -118,7 +117,7 @@ class Estimator(Component):
         self._contact_WF = self._filter.p_WB + p_BF @ self._filter.R_WB.T
 
     def _lies_still(self, state: HardwareState) -> bool:
-        """Whether the inertial sensors see no motion; of a damped robot that no foot holds: it lies."""
+        """Whether the inertial sensors see no motion; of a robot that no foot holds: it lies, or hangs."""
         off = abs(float(np.sqrt(state.acc_B @ state.acc_B)) - GRAVITY)
         turning = float(np.abs(self._filter.omega_B).max())
         return off < _REST_TOLERANCE and turning < self._settings.rest_rate
@@ -195,3 +194,11 @@ class Estimator(Component):
                 foot_std_m=np.sqrt(np.maximum(np.diagonal(f.P)[9:21], 0.0)).reshape(4, 3),
             ),
         )
+
+
+def _at_rest(reference: MotionReference | None) -> bool:
+    """Whether the joints are damped, or held where they are: nothing drives the robot that no foot holds."""
+    if reference is None:
+        return False
+    held = reference.mode == ControlMode.JOINT and np.array_equal(reference.joint_from, reference.joint_to)
+    return reference.mode == ControlMode.DAMP or held

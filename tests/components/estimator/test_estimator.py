@@ -217,6 +217,7 @@ def test_a_damped_robot_that_lies_on_its_belly_is_known_not_to_drift_away():
     assert speed_of_one_that_lies(3.0) > 0.1
     assert speed_of_one_that_lies(3.0, damping=True) < 0.01
     assert speed_of_one_that_lies(3.0, mode=ControlMode.DAMP) < 0.01
+    assert speed_of_one_that_lies(3.0, mode=ControlMode.JOINT) < 0.01  # held where it is
 
 
 def test_one_that_turns_or_falls_is_not_taken_to_lie_still():
