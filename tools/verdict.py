@@ -61,7 +61,7 @@ def verdict(picture: Picture, terrain: str, seconds: float, interactive: bool) -
                 "see the last events and the logs; `surefoot run` begins anew, `--set hw.seed=N` with other noise"
             )
             return Verdict(f"the robot fell: {reference.reason}", over=True, advice=advice)
-        if "missing or stale" in reference.reason:
+        if reference.reason.startswith("state/estimate is"):
             advice = "see the health of the estimator above and its log"
             return Verdict(f"the robot was damped: {reference.reason}", over=True, advice=advice)
     if seconds and reference.t >= seconds:

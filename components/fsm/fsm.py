@@ -57,6 +57,7 @@ class Fsm(Component):
         "trajopt/request",
         "foothold/request",
     )
+    complete = ("state/estimate",)  # one that is invalid must not be passed over
     memory: ClassVar[Memory] = Memory(
         "_reason",
         "_joint_from",
@@ -74,6 +75,7 @@ class Fsm(Component):
         robot = deployment.load_robot()
         self._stand_q = np.tile(robot.nominal.stand_q, 4)
         self._lie_q = np.tile(robot.nominal.lie_q, 4)
+        self._lower, self._upper = np.array(robot.position_range()).T
         self._model = build_model(robot)
         self._data = self._model.createData()
         self._posture: Posture | None = Posture.DAMP
@@ -94,15 +96,13 @@ class Fsm(Component):
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         self.heed_tuning(inbox)
         self._t = t
-        estimate = inbox.fresh("state/estimate", t)
-        now = self._observe(t, estimate) if estimate is not None else None
+        lost = self._lost(t, inbox)
+        now = None if lost else self._observe(t, inbox.latest("state/estimate"))
+        if lost and self._posture is not Posture.DAMP:
+            self._damp(lost)
         for message in inbox.new("operator/command"):
             outbox.publish("operator/answer", self._answer(message, now))
-        if now is None:
-            self._lost()
-        elif self._posture is not Posture.DAMP and np.abs(now.rpy[:2]).max() > self._settings.tilt_max:
-            self._damp(f"tilt {np.abs(now.rpy[:2]).max():.2f} rad, limit {self._settings.tilt_max} rad: fallen")
-        else:
+        if now is not None:
             self._advance(now, inbox)
         outbox.publish("fsm/reference", self._reference(t))
         self._send(outbox)
@@ -177,8 +177,8 @@ class Fsm(Component):
         return taken("the robot comes to rest")
 
     def _go(self, command: Command, now: Observation) -> Answer:
-        """stand or a direction: stand up first where need be."""
-        asked = command.asked
+        """stand or a direction: stand up first where need be; what waited until now is overruled."""
+        asked, self._wish = command.asked, ""
         if self._posture is Posture.DAMP and self._settings.hold_s > 0.0:
             self._wish = asked
             self._stiffen(now, f"commanded {asked}")
@@ -226,6 +226,10 @@ class Fsm(Component):
     # Postures -------------------------------------------------------------------------------------------
 
     def _advance(self, now: Observation, inbox: Inbox) -> None:
+        tilt, limit = float(np.abs(now.rpy[:2]).max()), self._settings.tilt_max
+        if self._posture is not Posture.DAMP and tilt > limit:
+            self._damp(f"tilt {tilt:.2f} rad, limit {limit} rad: fallen")
+            return
         if self._posture is Posture.STAND_UP and now.t >= self._joint_t1:
             self._stood_up(now)
         elif self._posture is Posture.HOLD:
@@ -270,8 +274,8 @@ class Fsm(Component):
                 self._obey(wish, now)
 
     def _stiffen(self, now: Observation, reason: str) -> None:
-        """The joints are held where they are, by gains that come up in `hold_s`."""
-        self._joint_from = self._joint_to = now.estimate.q.copy()
+        """The joints are held where they are, by gains that come up in `hold_s`; never beyond their range."""
+        self._joint_from = self._joint_to = np.clip(now.estimate.q, self._lower, self._upper)
         self._joint_t0, self._joint_t1 = now.t, now.t + self._settings.hold_s
         self._enter(Posture.HOLD, reason)
 
@@ -297,9 +301,17 @@ class Fsm(Component):
         if self._posture is not Posture.DAMP or self._cut or reason == _CUT:
             self._enter(Posture.DAMP, reason)
 
-    def _lost(self) -> None:
-        if self._posture is not Posture.DAMP:
-            self._damp("state/estimate is missing or stale: is the estimator running?")
+    @staticmethod
+    def _lost(t: float, inbox: Inbox) -> str:
+        """Why nobody knows how the robot moves; empty where it is known.
+
+        A filter that begins anew in the middle of a motion says so in one estimate; the next may be valid already.
+        """
+        if any(not estimate.valid for estimate in inbox.new("state/estimate")):
+            return "state/estimate is invalid: the estimator has lost the base and begins anew"
+        if inbox.fresh("state/estimate", t) is None:
+            return "state/estimate is missing or stale: is the estimator running?"
+        return ""
 
     def _enter(self, posture: Posture, reason: str) -> None:
         self._posture, self._reason = posture, reason

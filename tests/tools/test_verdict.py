@@ -46,7 +46,12 @@ def test_a_person_who_damps_the_robot_ends_the_run_and_a_start_in_damping_does_n
 
 
 @pytest.mark.parametrize(
-    "reason", ["tilt 0.80 rad, limit 0.7 rad: fallen", "state/estimate is missing or stale: why?"]
+    "reason",
+    [
+        "tilt 0.80 rad, limit 0.7 rad: fallen",
+        "state/estimate is missing or stale: why?",
+        "state/estimate is invalid: why?",
+    ],
 )
 def test_a_robot_that_lies_ends_the_run_with_advice(reason):
     end = judged(state="DAMP", reason=reason, interactive=True)

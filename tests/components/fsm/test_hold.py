@@ -49,6 +49,13 @@ def test_it_is_held_at_the_measured_posture_until_it_is_to_stand():
     assert machine("stand").state == "STAND_UP"
 
 
+def test_a_joint_that_lies_beyond_its_range_is_held_at_the_end_of_it():
+    machine = Machine()
+    lower = np.array(load_robot("aliengo").position_range())[:, 0]
+    machine.q[2] = lower[2] - 0.01
+    assert machine("hold").joint_to[2] == lower[2]
+
+
 def test_to_stand_the_gains_come_up_first():
     machine = Machine(hold_s=0.1)
     held = machine("stand")

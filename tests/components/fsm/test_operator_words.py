@@ -1,5 +1,7 @@
 """From every state the robot sits down as it is told to, and what has been cut stays so until it is damped."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from walker import LIE_Q, Walker
@@ -51,6 +53,45 @@ def test_one_that_lies_and_feels_no_foot_sits_at_once_when_the_way_back_has_last
     assert robot.state == "RETURN_SAFE"
     robot.command("sit")
     assert robot.run(0.05, lambda: robot.state == "SIT_DOWN")
+
+
+@pytest.mark.parametrize("first, then, rests", [
+    ("left", "stand", "STOPPED"),
+    ("sit", "stand", "STOPPED"),
+    ("left", "right", "STOPPED"),
+    ("left", "sit", "DAMP"),
+])  # fmt: skip
+def test_of_two_wishes_the_last_one_counts(first, then, rests):
+    robot = Walker(Settings(goal_m=0.2))
+    robot.come_to("MOVE")
+    robot.tell(first)
+    robot.tell(then)
+    assert robot.run(120.0, lambda: robot.state == rests and not robot.fsm._wish)
+    if then == "right":
+        assert robot.run(120.0, lambda: robot.state == rests and robot.reference.finished)
+    robot.run(3.0)
+    assert robot.state == rests
+
+
+def test_in_the_step_in_which_the_estimate_is_lost_a_wish_is_kept_as_is_said():
+    robot = Walker()
+    robot.come_to("MOVE")
+    robot.inbox.deliver("state/estimate", replace(robot.inbox.latest("state/estimate"), valid=False))
+    robot.command("stand")
+    robot.fsm.step(robot.t, robot.inbox, robot.outbox)
+    assert robot.state == "DAMP" and robot.answers[-1].taken
+    robot.inbox.clear_new()
+    robot.come_to("STAND")
+
+
+def test_an_estimator_that_began_anew_in_motion_damps_though_its_next_estimate_is_valid():
+    robot = Walker()
+    robot.come_to("MOVE")
+    valid = robot.inbox.latest("state/estimate")
+    for estimate in (replace(valid, valid=False), valid):
+        robot.inbox.deliver("state/estimate", estimate)
+    robot.fsm.step(robot.t, robot.inbox, robot.outbox)
+    assert robot.state == "DAMP" and robot.reference.reason.startswith("state/estimate is invalid")
 
 
 def test_what_follows_a_cut_is_refused_until_it_is_damped():
