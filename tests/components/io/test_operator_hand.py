@@ -1,4 +1,4 @@
-"""io sees to it that a robot that is told to sit ends up damped."""
+"""io sees to it that a robot that is told to sit, or to damp, ends up damped."""
 
 import numpy as np
 import pytest
@@ -44,18 +44,33 @@ def test_one_that_is_still_driven_after_its_time_is_damped_once(hand):
     assert hand._gate.told == []
     hand.watch(DRIVES, 6.0)
     hand.watch(DRIVES, 7.0)
-    assert hand._gate.told == [("damp", "told to sit 5 s ago and still driven: is fsm running?")]
+    assert hand._gate.told == [("damp", "told to settle 5 s ago and still driven: is fsm running?")]
 
 
-@pytest.mark.parametrize("then", ["halt", "pause", "skip"])
+@pytest.mark.parametrize("then", ["halt", "pause", "skip", "damp", "hold", "forwards", "direction"])
 def test_a_word_that_does_not_take_the_sit_back_gives_it_no_more_time(hand, then):
     hear(hand, "sit", t=1.0)
+    hand.watch(DRIVES, 3.9)
     hear(hand, then, t=4.0)
     hand.watch(DRIVES, 6.0)
-    assert hand._gate.told == [("damp", "told to sit 5 s ago and still driven: is fsm running?")]
+    assert hand._gate.told[-1:] == [("damp", "told to settle 5 s ago and still driven: is fsm running?")]
 
 
-@pytest.mark.parametrize("then", ["stand", "forward", "stop"])
+def test_one_that_is_told_to_damp_and_is_driven_on_is_damped(hand):
+    hear(hand, "damp", t=1.0)
+    hand.watch(DRIVES, 6.0)
+    assert hand._gate.told[-1] == ("damp", "told to settle 5 s ago and still driven: is fsm running?")
+
+
+def test_one_that_is_held_after_it_was_damped_is_not(hand):
+    hear(hand, "sit", t=1.0)
+    hand.watch(DAMPS, 3.0)
+    hear(hand, "hold", t=4.0)
+    hand.watch(DRIVES, 30.0)
+    assert hand._gate.told == []
+
+
+@pytest.mark.parametrize("then", ["stand", "forward", "direction 1 0", "stop"])
 def test_one_that_sits_or_is_told_otherwise_is_not(hand, then):
     hear(hand, "sit")
     hand.watch(DAMPS, 6.0)
