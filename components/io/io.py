@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import ClassVar
 
 import numpy as np
@@ -55,21 +56,22 @@ class Io(Component):
         sensors = self.robot.read()
         measured_t = t - sensors.age_s if sensors.t is None else sensors.t - self.deployment.run.epoch_s
         law, damping, reason = self._judged(inbox, sensors, t, t - measured_t)
-        outbox.publish(
-            "hw/state",
-            HardwareState(
-                t=measured_t,
-                valid=True,
-                q=sensors.q,
-                dq=sensors.dq,
-                tau=sensors.tau,
-                omega_WB_B=sensors.omega_WB_B,
-                acc_B=sensors.acc_B,
-                damping=damping,
-                gate=reason,
-                foot_force=_NO_FEET if sensors.foot_force is None else sensors.foot_force,
-            ),
-        )
+        if _is_finite(sensors):  # nothing else may be published; the gate has said what is wrong
+            outbox.publish(
+                "hw/state",
+                HardwareState(
+                    t=measured_t,
+                    valid=True,
+                    q=sensors.q,
+                    dq=sensors.dq,
+                    tau=sensors.tau,
+                    omega_WB_B=sensors.omega_WB_B,
+                    acc_B=sensors.acc_B,
+                    damping=damping,
+                    gate=reason,
+                    foot_force=_NO_FEET if sensors.foot_force is None else sensors.foot_force,
+                ),
+            )
         image = self.robot.depth()
         if image is not None:
             outbox.publish(
@@ -121,3 +123,9 @@ class Io(Component):
             self.robot.write(law)
             self.robot.advance()
             self._cycles += 1
+
+
+def _is_finite(sensors: Sensors) -> bool:
+    """One sum tells: it is finite only if every figure is."""
+    total = sensors.q.sum() + sensors.dq.sum() + sensors.tau.sum() + sensors.omega_WB_B.sum() + sensors.acc_B.sum()
+    return isfinite(total)

@@ -157,3 +157,14 @@ def test_what_is_held_on_a_remote_is_said_once_and_a_cut_is_made_at_once(stop, w
     run(io, 3, hold)
     assert io.said == [f"{word}: buttons of the remote"]
     assert all(law.kd.any() for law in laws) == (stop == "settle")
+
+
+def test_a_reading_that_is_not_finite_is_held_over_then_damped_and_never_published():
+    io, count = Io(Deployment()), iter(range(50))
+    read = io.robot.read
+    io.robot.read = lambda: replace(read(), q=np.full(12, np.nan)) if 10 <= next(count) < 40 else read()
+    laws, published = laws_of(io), [message for key, message in run(io, 50, hold) if key == "hw/state"]
+    assert len(published) == 20
+    driven = [bool(law.kp.any()) for law in laws]
+    held = round(Deployment().hw.gate.hold_s / 0.002)
+    assert all(driven[: 10 + held - 1]) and not any(driven[10 + held + 1 : 40])
