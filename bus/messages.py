@@ -105,7 +105,7 @@ class JointCommand(Message):
     kd: np.ndarray = array(12, doc="velocity gain", unit="N m s/rad")
     tau: np.ndarray = array(12, doc="feed-forward torque", unit="N m")
     force_W: np.ndarray = array(4, 3, doc="ground reaction the torques are meant to cause", unit="N")
-    policy_age_s: float = number("age of the MPC policy that was used", "s")
+    policy_age_s: float = number("age of the MPC policy that was used; -1 without one", "s")
     solver: str = text("'ok', or why the whole-body QP was not used in this step")
 
 
@@ -142,7 +142,7 @@ class MotionReference(Message):
     reason: str = text("why the machine entered this state")
     mode: int = integer("a ControlMode")
     leg: int = integer("leg being moved or probed; -1 none", default=-1)
-    candidate: int = integer("0 the planned foothold, 1..3 the alternatives")
+    candidate: int = integer("0 the planned foothold, from 1 on the alternatives")
     around: int = integer("0 the foothold, 1..4 front, back, left, right of it, 5 back on it")
     force_index: int = integer("which of the six forces is applied; -1 none", default=-1)
     finished: bool = flag("the machine has reached its goal and stands")
