@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -13,11 +13,19 @@ from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.components.memory import Memory
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotation import log_rotation, matrix_of
-from surefoot.components.wbc.base_target import BaseTarget, static_loads
+from surefoot.components.wbc.base_target import BaseTarget, Target, static_loads
 from surefoot.components.wbc.momentum_observer import MomentumObserver
 from surefoot.components.wbc.whole_body_qp import QpFailed, Task, WholeBodyQp
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
+
+
+class _Joints(NamedTuple):
+    """What the motors follow beside the torques: (12,) each."""
+
+    q: np.ndarray  # [rad]
+    dq: np.ndarray  # [rad/s]
+    kp: np.ndarray  # [N m/rad]
 
 
 class Wbc(Component):
@@ -129,68 +137,98 @@ class Wbc(Component):
         policy: Policy | None,
         orphaned: bool,
     ) -> JointCommand:
-        settings, qp = self._settings, self._qp
-        R = matrix_of(estimate.quat_WB)
-        w, x, y, z = estimate.quat_WB
-        q = np.concatenate([estimate.p_WB, [x, y, z, w], estimate.q])
-        v = np.concatenate([R.T @ estimate.v_WB_W, estimate.omega_WB_B, estimate.dq])
-        qp.update(q, v)
-        status = reference.leg_status
-        trusted = (status == LegStatus.STANCE) | (status == LegStatus.PROBING) | (status == LegStatus.COLLAPSING)
-        # Nobody else will tell when a foot that is on its way down has landed.
-        stance = trusted | (orphaned & (t > reference.swing_t1) & estimate.contact)
+        R, mass = self._take(estimate), self._qp.mass
+        stance = _stance(t, estimate, reference, orphaned)
         loads_n = np.zeros(4)
         if policy is None:
-            loads_n = static_loads(estimate.p_WF, qp.com_W, stance, qp.mass * GRAVITY)
+            loads_n = static_loads(estimate.p_WF, self._qp.com_W, stance, mass * GRAVITY)
         target = self._target.at(t, policy, estimate.p_WB, R, loads_n)
         if self._target.lowered:
             return self._damp(t, "no policy came back: the base has been lowered; command sit, then stand")
         self._observe(t, reference)
-        # A foot that has just left the ground may still carry in the policy: the wrench it was to give is
-        # asked of the others, or the base would tip towards it until the next policy comes.
-        bias_force = target.force_W * stance[:, None]
-        linear = settings.kp * (target.p_WB - estimate.p_WB) + settings.kd * (target.v_WB_W - estimate.v_WB_W)
-        turn = settings.kp * log_rotation(target.R_WB @ R.T)
-        turn += settings.kd * (target.omega_WB_W - R @ estimate.omega_WB_B)
-        impedance = np.concatenate([qp.mass * linear, qp.inertia_W @ turn])
-        wrench = qp.wrench_map @ target.force_W.ravel() + impedance - self._observer.wrench_W
-        crept = (reference.p_WF - estimate.p_WF) * trusted[:, None]
-        acceleration = settings.stance_kp * crept - settings.stance_kd * estimate.v_WF
-        kp, q_ref, dq_ref = np.zeros(12), estimate.q.copy(), self._still_feet(estimate, R)
-        if reference.swing_leg >= 0 and not stance[reference.swing_leg]:
-            leg = reference.swing_leg
-            own = slice(3 * leg, 3 * leg + 3)
-            acceleration[leg], q_ref[own], dq_ref[own] = self._swing(t, estimate, reference, R)
-            kp[own] = settings.joint_kp
+        joints, acceleration = self._feet(t, estimate, reference, R, stance)
+        settings = self._settings
         weight = np.where(
             reference.leg_status == LegStatus.PROBING, settings.probe_force_weight, settings.force_weight
         )
-        held = self._target.held_s
-        solver = "ok" if held == 0.0 else f"no fresh policy: base held for {held:.1f} s"
+        # A foot that has just left the ground may still carry in the policy: the wrench it was to give is
+        # asked of the others, or the base would tip towards it until the next policy comes.
+        bias_force = target.force_W * stance[:, None]
+        task = Task(stance, self._wrench(estimate, target, R), bias_force, weight, acceleration)
         try:
-            tau, force = qp.solve(Task(stance, wrench, bias_force, weight, acceleration))
-            self._failures, self._last_force = 0, force
+            tau, force, solver = self._solve(task)
         except QpFailed as error:
-            self._failures += 1
-            if self._failures > settings.failures_max:
-                return self._damp(t, str(error))
-            solver, force = str(error), self._last_force * stance[:, None]
-            tau = qp.torques(force, np.zeros(18))
+            return self._damp(t, str(error))
         # What the motors lose in the joints before it reaches the ground: as much as a light foot presses with.
-        loss = self._friction * np.tanh(dq_ref / settings.friction_speed) + self._damping * dq_ref
-        tau = tau + np.repeat(stance, 3) * loss
+        loss = self._friction * np.tanh(joints.dq / settings.friction_speed) + self._damping * joints.dq
         return JointCommand(
             t=t,
             valid=True,
-            q=q_ref,
-            dq=dq_ref,
-            kp=kp,
+            q=joints.q,
+            dq=joints.dq,
+            kp=joints.kp,
             kd=np.full(12, settings.joint_kd),
-            tau=tau,
+            tau=tau + np.repeat(stance, 3) * loss,
             force_W=force,
             policy_age_s=-1.0 if policy is None else t - policy.t,
             solver=solver,
         )
+
+    def _take(self, estimate: StateEstimate) -> np.ndarray:
+        """The dynamics at the estimate; R_WB (3, 3)."""
+        R = matrix_of(estimate.quat_WB)
+        w, x, y, z = estimate.quat_WB
+        q = np.concatenate([estimate.p_WB, [x, y, z, w], estimate.q])
+        v = np.concatenate([R.T @ estimate.v_WB_W, estimate.omega_WB_B, estimate.dq])
+        self._qp.update(q, v)
+        return R
+
+    def _wrench(self, estimate: StateEstimate, target: Target, R: np.ndarray) -> np.ndarray:
+        """(6,) force and moment about the centre of mass that the feet are to give [N, N m].
+
+        What the policy's forces give and the impedance that draws the base to its target, less what pushes it.
+        """
+        settings, qp = self._settings, self._qp
+        linear = settings.kp * (target.p_WB - estimate.p_WB) + settings.kd * (target.v_WB_W - estimate.v_WB_W)
+        turn = settings.kp * log_rotation(target.R_WB @ R.T)
+        turn += settings.kd * (target.omega_WB_W - R @ estimate.omega_WB_B)
+        impedance = np.concatenate([qp.mass * linear, qp.inertia_W @ turn])
+        return qp.wrench_map @ target.force_W.ravel() + impedance - self._observer.wrench_W
+
+    def _feet(
+        self, t: float, estimate: StateEstimate, reference: MotionReference, R: np.ndarray, stance: np.ndarray
+    ) -> tuple[_Joints, np.ndarray]:
+        """References of the joints, and the accelerations (4, 3) that the feet are to have [m/s^2]."""
+        settings = self._settings
+        crept = (reference.p_WF - estimate.p_WF) * _bears(reference)[:, None]
+        acceleration = settings.stance_kp * crept - settings.stance_kd * estimate.v_WF
+        joints = _Joints(estimate.q.copy(), self._still_feet(estimate, R), np.zeros(12))
+        leg = reference.swing_leg
+        if leg >= 0 and not stance[leg]:
+            own = slice(3 * leg, 3 * leg + 3)
+            acceleration[leg], joints.q[own], joints.dq[own] = self._swing(t, estimate, reference, R)
+            joints.kp[own] = settings.joint_kp
+        return joints, acceleration
+
+    def _solve(self, task: Task) -> tuple[np.ndarray, np.ndarray, str]:
+        """Torques (12,) [N m], forces (4, 3) [N], and in words what they are made of.
+
+        Where the QP fails the forces of the last cycle are kept.
+
+        Raises:
+            QpFailed: more often in succession than `failures_max`.
+        """
+        held = self._target.held_s
+        try:
+            tau, force = self._qp.solve(task)
+        except QpFailed as error:
+            self._failures += 1
+            if self._failures > self._settings.failures_max:
+                raise
+            force = self._last_force * task.stance[:, None]
+            return self._qp.torques(force, np.zeros(18)), force, str(error)
+        self._failures, self._last_force = 0, force
+        return tau, force, "ok" if held == 0.0 else f"no fresh policy: base held for {held:.1f} s"
 
     def _observe(self, t: float, reference: MotionReference) -> None:
         """The momentum observer sees the forces of the last cycle while every foot is trusted."""
@@ -227,3 +265,15 @@ class Wbc(Component):
         carried = estimate.v_WB_W + R @ np.cross(estimate.omega_WB_B, p_BF[leg])
         dq = np.linalg.solve(J @ J.T + 1e-4 * np.eye(3), (v - carried) @ R)
         return acceleration, q[leg], J.T @ dq
+
+
+def _stance(t: float, estimate: StateEstimate, reference: MotionReference, orphaned: bool) -> np.ndarray:
+    """(4,) the feet that bear. Without the state machine nobody else tells when one on its way down has landed."""
+    landed = orphaned & (t > reference.swing_t1) & estimate.contact
+    return _bears(reference) | landed
+
+
+def _bears(reference: MotionReference) -> np.ndarray:
+    """(4,) the feet that the state machine has on the ground."""
+    status = reference.leg_status
+    return (status == LegStatus.STANCE) | (status == LegStatus.PROBING) | (status == LegStatus.COLLAPSING)

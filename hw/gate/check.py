@@ -44,7 +44,8 @@ class Check(Enum):
     # fmt: off
     CUT = ("torque cut by a person (`surefoot cut`)", Answer.CUT, "", Latch.AT_ONCE,
            "when nobody is near the robot: command damp, then stand")
-    STOP = ("not damped in time after `surefoot stop` or `damp`, or freed from a cut", Answer.DAMP, "", Latch.AT_ONCE, "")
+    STOP = ("not damped in time after `surefoot stop` or `damp`, or freed from a cut", Answer.DAMP, "",
+            Latch.AT_ONCE, "")
     TILT = ("tilt of the trunk, by gyroscope and accelerometer", Answer.DAMP, "hw.gate.tilt_max", Latch.AT_ONCE,
             "set the robot upright")
     IMU = ("IMU of which no figure changes", Answer.DAMP, "hw.gate.imu_stuck_cycles", Latch.AT_ONCE,
