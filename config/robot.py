@@ -13,6 +13,9 @@ from surefoot.config.typed_toml import ConfigError, Within, build, read_toml
 LEGS = ("FL", "FR", "RL", "RR")
 """Order of legs in every array: front left, front right, rear left, rear right."""
 
+ANTICLOCKWISE = (0, 2, 3, 1)
+"""The legs around the robot: three of them in this order enclose their triangle anticlockwise."""
+
 JOINTS = ("hip", "thigh", "calf")
 """Order of joints in a leg: abduction, thigh, calf."""
 

@@ -22,6 +22,7 @@ from surefoot.config.fsm import Fsm
 from surefoot.config.robot import LEGS, Robot
 
 _NO_FOOTHOLD = "no safe foothold among the alternatives"
+_MAP_S, _PLAN_S = 1.0, 2.0  # an answer that takes longer is asked for again
 
 
 class Planning:
@@ -87,7 +88,9 @@ class Planning:
 
     def send(self, waited_s: float) -> Arrow | None:
         """The map has not answered yet."""
-        return Arrow(State.SEND, "no answer on foothold/regions for 1 s: asked again") if waited_s > 1.0 else None
+        if waited_s <= _MAP_S:
+            return None
+        return Arrow(State.SEND, f"no answer on foothold/regions for {_MAP_S:g} s: asked again")
 
     def regions(self, answer: FootholdRegions, now: Observation) -> Arrow:
         """The map's answer: where it allows a step that the base can support, ask for a stride with it."""
@@ -121,7 +124,9 @@ class Planning:
 
     def opt(self, waited_s: float) -> Arrow | None:
         """The trajectory optimisation has not answered yet."""
-        return Arrow(State.SEND, "no answer on trajopt/plan for 2 s: asked again") if waited_s > 2.0 else None
+        if waited_s <= _PLAN_S:
+            return None
+        return Arrow(State.SEND, f"no answer on trajopt/plan for {_PLAN_S:g} s: asked again")
 
     def plan(self, plan: Plan) -> Arrow:
         """The trajectory optimisation's answer: the probing position and the forces that it must bear."""

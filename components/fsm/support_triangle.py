@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-_ANTICLOCKWISE = (0, 2, 3, 1)
+from surefoot.config.robot import ANTICLOCKWISE
 
 
 class SupportTriangle:
@@ -16,7 +16,7 @@ class SupportTriangle:
     """
 
     def __init__(self, p_WF: np.ndarray, leg: int):
-        self.corners = np.array([p_WF[other, :2] for other in _ANTICLOCKWISE if other != leg])
+        self.corners = np.array([p_WF[other, :2] for other in ANTICLOCKWISE if other != leg])
         edges = np.roll(self.corners, -1, axis=0) - self.corners
         self.normals = np.stack([-edges[:, 1], edges[:, 0]], axis=1) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
 

@@ -7,10 +7,9 @@ import numpy as np
 from surefoot.components.ocp.quadratic_model import QuadraticModel
 from surefoot.components.ocp.relaxed_barrier import RelaxedBarrier
 from surefoot.components.ocp.term import Nodes
+from surefoot.config.robot import ANTICLOCKWISE
 
-# Neighbours around the robot, so that three of them in this order enclose the polygon anticlockwise.
-_ANTICLOCKWISE = (0, 2, 3, 1)
-_CORNERS = np.array([[leg for leg in _ANTICLOCKWISE if leg != out] for out in range(4)])
+_CORNERS = np.array([[leg for leg in ANTICLOCKWISE if leg != out] for out in range(4)])
 _NEXT = np.roll(_CORNERS, -1, axis=1)
 
 

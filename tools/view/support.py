@@ -6,10 +6,10 @@ import numpy as np
 
 from surefoot.bus.messages import MotionReference
 from surefoot.components.fsm.support_triangle import SupportTriangle
+from surefoot.config.robot import ANTICLOCKWISE
 from surefoot.tools.view.drawing import Drawing, Lines, Mesh, level
 from surefoot.tools.view.palette import COM, MARGIN, SUPPORT
 
-_ANTICLOCKWISE = (0, 2, 3, 1)
 _ABOVE_M = 0.006  # the polygon lies that far over the ground, to be seen
 _COM_M = 0.035
 
@@ -23,7 +23,7 @@ def draw_support(reference: MotionReference, com_W: np.ndarray, foot_radius_m: f
         foot_radius_m: the ground lies so far below the feet's centres.
         margin_m: how far inside the centre of mass is to be.
     """
-    feet = [leg for leg in _ANTICLOCKWISE if leg != reference.leg]
+    feet = [leg for leg in ANTICLOCKWISE if leg != reference.leg]
     corners = reference.p_WF[feet] - [0.0, 0.0, foot_radius_m - _ABOVE_M]
     below = np.array([*com_W[:2], _plane_z(corners, com_W[:2])])
     drawing: Drawing = {
