@@ -10,7 +10,6 @@ import numpy as np
 from surefoot.bus.messages import ControlMode, MotionReference, StateEstimate
 from surefoot.bus.topics import MPC_RATE_HZ
 from surefoot.components.component import Inbox, Outbox
-from surefoot.components.mpc.mpc import Mpc
 from surefoot.components.robot_model import LegKinematics
 from surefoot.config.deployment import Deployment
 
@@ -20,6 +19,8 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 def median_solve_ms(deployment: Deployment, solves: int = _SOLVES) -> float:
     """Median wall time of a step of the MPC for a robot that stands and shifts its base [ms]."""
+    from surefoot.components.mpc.mpc import Mpc  # slow; with simulated time nobody asks
+
     robot = deployment.load_robot()
     mpc = Mpc(deployment)
     mpc.warm_up()

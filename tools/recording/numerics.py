@@ -6,7 +6,6 @@ import math
 from hashlib import blake2b
 
 import numpy as np
-import scipy.linalg
 
 
 def numerics() -> str:
@@ -15,6 +14,8 @@ def numerics() -> str:
     It covers what the components compute with: products, factorisations and elementary functions of numpy and
     scipy, and those of the C library.
     """
+    import scipy.linalg  # slow, and every run imports this file, recorded or not
+
     rng = np.random.default_rng(0)
     results = [np.array([f(x) for x in rng.uniform(-3.0, 3.0, 200)]) for f in (math.sin, math.cos, math.exp)]
     for size in (3, 6, 12, 24, 36):

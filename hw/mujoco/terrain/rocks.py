@@ -7,7 +7,6 @@ from functools import lru_cache
 
 import mujoco
 import numpy as np
-from scipy.spatial.distance import pdist
 
 from surefoot.config.robot import GRAVITY
 from surefoot.config.terrain import Rocks, Terrain
@@ -101,6 +100,8 @@ def _settle(model: mujoco.MjModel, data: mujoco.MjData) -> None:
 
 def _vertices(rocks: Rocks, rng: np.random.Generator) -> np.ndarray:
     """(n, 3) corners: points on an ellipsoid that is cut off flat above and below."""
+    from scipy.spatial.distance import pdist  # a third of io's start, and most terrains have no stones
+
     # Small stones are many and large ones few: their number falls with the square of the size.
     size = 1.0 / rng.uniform(1.0 / rocks.size_max_m, 1.0 / rocks.size_min_m)
     points = rng.normal(size=(_CORNERS, 3))
