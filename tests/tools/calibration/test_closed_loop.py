@@ -202,6 +202,12 @@ def test_the_feet_of_an_emulated_robot_are_scaled_by_its_weight():
     assert without.unit.foot_scale is None and any("zero is not known" in note for note in without.notes)
 
 
+@pytest.fixture(scope="module")
+def at_rest():
+    """What a robot tells that stands still."""
+    return standing_states(Io(Deployment(calibration=SHORT)), 0.5)
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -211,17 +217,14 @@ def test_the_feet_of_an_emulated_robot_are_scaled_by_its_weight():
         ({"tau": np.zeros(12)}, "force on .* N, at least 20: let it stand on four feet"),
     ],
 )
-def test_what_is_not_a_robot_at_rest_on_its_feet_is_refused(change, words):
-    deployment = Deployment(calibration=SHORT)
-    states = [replace(state, **change) for state in standing_states(Io(deployment), 0.5)]
+def test_what_is_not_a_robot_at_rest_on_its_feet_is_refused(at_rest, change, words):
+    states = [replace(state, **change) for state in at_rest]
     with pytest.raises(CannotCalibrate, match=words):
-        measured(states, deployment)
+        measured(states, Deployment(calibration=SHORT))
 
 
-def test_a_joint_that_drifts_is_refused():
-    deployment = Deployment(calibration=SHORT)
-    states = standing_states(Io(deployment), 0.5)
-    way = np.linspace(0.0, 0.05, len(states))
-    drifting = [replace(state, q=state.q + each) for state, each in zip(states, way, strict=True)]
+def test_a_joint_that_drifts_is_refused(at_rest):
+    way = np.linspace(0.0, 0.05, len(at_rest))
+    drifting = [replace(state, q=state.q + each) for state, each in zip(at_rest, way, strict=True)]
     with pytest.raises(CannotCalibrate, match=r"drift of .* = 0\.0\d+ rad, at most 0\.01: wait"):
-        measured(drifting, deployment)
+        measured(drifting, Deployment(calibration=SHORT))
