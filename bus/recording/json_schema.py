@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from surefoot.bus.message import FieldSpec, Message, specs
 
 _JSON_TYPE = {"number": "number", "integer": "integer", "flag": "boolean", "text": "string"}
+
+
+ArraySchema = Callable[[str, FieldSpec], dict[str, Any]]
+"""Of a field that is an array, by its name and specification."""
 
 
 def json_schema(cls: type[Message]) -> bytes:
@@ -17,52 +21,44 @@ def json_schema(cls: type[Message]) -> bytes:
     An array is a byte string: `dtype` says how to read it, `shape` how to fold it (-1: any length; then the
     field is a list of the real shape and the bytes).
     """
-    properties: dict[str, Any] = {"message": {"const": cls.__name__}}
-    return _schema(cls, properties | {name: _field(spec, _array) for name, spec in specs(cls).items()})
+    return schema_of(cls, _array, {"message": {"const": cls.__name__}})
 
 
-def plain_json_schema(cls: type[Message]) -> bytes:
-    """The schema of a message as plain JSON, its arrays as lists of lists."""
-    return _schema(cls, {name: _field(spec, _lists) for name, spec in specs(cls).items()})
+def schema_of(cls: type[Message], array: ArraySchema, head: Mapping[str, Any] | None = None) -> bytes:
+    """The schema of a message type.
 
-
-def _schema(cls: type[Message], properties: dict[str, Any]) -> bytes:
+    Args:
+        cls: the type.
+        array: says what becomes of its arrays; unit and meaning are added.
+        head: properties that stand before its fields.
+    """
+    properties = {name: _field(name, spec, array) for name, spec in specs(cls).items()}
     schema = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": cls.__name__,
         "description": (cls.__doc__ or "").strip(),
         "type": "object",
-        "properties": properties,
+        "properties": dict(head or {}) | properties,
     }
     return json.dumps(schema, indent=1).encode()
 
 
-def _field(spec: FieldSpec, array: Callable[[FieldSpec], dict[str, Any]]) -> dict[str, Any]:
+def _field(name: str, spec: FieldSpec, array: ArraySchema) -> dict[str, Any]:
     if spec.kind == "array":
-        return array(spec)
+        return array(name, spec) | _words(spec)
     entry: dict[str, Any] = {"type": "array", "items": {"type": "string"}}
     if spec.kind != "names":
         entry = {"type": _JSON_TYPE[spec.kind]}
     return entry | _words(spec)
 
 
-def _array(spec: FieldSpec) -> dict[str, Any]:
+def _array(_name: str, spec: FieldSpec) -> dict[str, Any]:
     raw: dict[str, Any] = {"type": "string", "contentEncoding": "binary"}
-    facts = {"dtype": f"{spec.dtype}, little-endian", "shape": list(spec.shape)} | _words(spec)
+    facts = {"dtype": f"{spec.dtype}, little-endian", "shape": list(spec.shape)}
     if -1 in spec.shape:
         shape = {"type": "array", "items": {"type": "integer"}}
         return {"type": "array", "prefixItems": [shape, raw], "items": False} | facts
     return raw | facts
-
-
-def _lists(spec: FieldSpec) -> dict[str, Any]:
-    of = {"bool": "boolean", "int64": "integer", "uint8": "integer"}.get(spec.dtype, "number")
-    entry: dict[str, Any] = {"type": of}
-    for length in reversed(spec.shape):
-        entry = {"type": "array", "items": entry}
-        if length >= 0:
-            entry |= {"minItems": length, "maxItems": length}
-    return entry | _words(spec)
 
 
 def _words(spec: FieldSpec) -> dict[str, str]:

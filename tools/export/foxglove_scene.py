@@ -54,7 +54,7 @@ def scene_updates(recording: RecordingTables, begin_s: float, end_s: float) -> I
         t_ns = round(1e9 * instant.t)
         entities = [_entity("robot", t_ns, **_robot(instant, robot, legs))]
         entities.append(_entity("verdicts", t_ns, cylinders=[_mark(*each) for each in instant.verdicts]))
-        yield t_ns, json.dumps({"deletions": [], "entities": entities}).encode()
+        yield t_ns, json.dumps({"deletions": [], "entities": entities}, allow_nan=False).encode()
 
 
 def _schema_of(value: Any) -> dict[str, Any]:

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import CompressionType, Writer
 
-from surefoot.bus.message import Message, specs
-from surefoot.bus.recording.json_schema import plain_json_schema
 from surefoot.bus.topics import TOPICS
 from surefoot.tools.export.contents import Contents
 from surefoot.tools.export.foxglove_scene import SCHEMA_NAME, TOPIC, scene_schema, scene_updates
+from surefoot.tools.export.json_shape import plain_json_schema, to_json
 from surefoot.tools.tables.recording_tables import RecordingTables
 
 _WINDOW_S = 5.0  # of the recording in memory at once
@@ -44,25 +41,6 @@ def write_json_mcap(recording: RecordingTables, wanted: Contents, out: Path) -> 
             begin_s += _WINDOW_S
         writer.finish()
     return count
-
-
-def to_json(message: Message) -> bytes:
-    """A message as a JSON object; what is not a number is null."""
-    return json.dumps(
-        {name: _value(getattr(message, name), spec.finite) for name, spec in specs(type(message)).items()}
-    ).encode()
-
-
-def _value(value: Any, finite: bool) -> Any:
-    if isinstance(value, np.ndarray):
-        if not finite and not np.isfinite(value).all():
-            told = value.astype(object)
-            told[~np.isfinite(value)] = None
-            return told.tolist()
-        return value.tolist()
-    if isinstance(value, float) and not np.isfinite(value):
-        return None
-    return value
 
 
 def _write_scene(writer: Writer, recording: RecordingTables, wanted: Contents) -> int:

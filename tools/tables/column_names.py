@@ -1,8 +1,7 @@
-"""What the numbers of a field are called where a table has one column for each of them."""
+"""What the numbers of a field are called: legs, joints and coordinates instead of places in an array."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import product
 
 from surefoot.bus.message import FieldSpec
@@ -24,20 +23,30 @@ def column_names(field: str, spec: FieldSpec) -> list[str]:
     """
     if spec.kind != "array" or -1 in spec.shape:
         return [field]
-    return ["_".join((field, *labels)) for labels in product(*_axes(field, spec.shape))]
+    axes = [
+        names or [str(number) for number in range(length)]
+        for names, length in zip(axis_names(field, spec), spec.shape, strict=True)
+    ]
+    return ["_".join((field, *labels)) for labels in product(*axes)]
 
 
-def _axes(field: str, shape: tuple[int, ...]) -> list[Sequence[str]]:
-    """Names along each axis: legs along a first of four, coordinates along a last of three; numbers elsewhere."""
+def axis_names(field: str, spec: FieldSpec) -> list[tuple[str, ...]]:
+    """Names along each axis of an array: legs along a first of four, coordinates along a last of three, or none.
+
+    Args:
+        field: its name.
+        spec: its shape.
+    """
+    shape = spec.shape
     if field.startswith("quat_"):
         return [_QUATERNION]
-    axes: list[Sequence[str]] = [[str(number) for number in range(length)] for length in shape]
+    if shape == (len(JOINT_NAMES),):
+        return [JOINT_NAMES]
+    if shape == (len(_POSE),):
+        return [_POSE]
+    axes: list[tuple[str, ...]] = [() for _ in shape]
     if shape[0] == len(LEGS) and field not in _NOT_BY_LEG:
         axes[0] = LEGS
     if shape[-1] == len(_XYZ):
         axes[-1] = _XYZ
-    if shape == (len(JOINT_NAMES),):
-        axes = [JOINT_NAMES]
-    if shape == (len(_POSE),):
-        axes = [_POSE]
     return axes

@@ -1,22 +1,18 @@
 """What other programs get is what was recorded, number for number."""
 
 import csv
-import json
-import math
 import sys
 
 import numpy as np
 import pytest
 import scenes
-from mcap.reader import make_reader
 
 from surefoot.bus.codec import decode
 from surefoot.bus.message import specs
-from surefoot.bus.messages import ElevationGrid, FsmEvent, StateEstimate
+from surefoot.bus.messages import FsmEvent, StateEstimate
 from surefoot.bus.recording.reader import Recording
 from surefoot.bus.topics import TOPICS
 from surefoot.tools.cli import main
-from surefoot.tools.export.json_mcap import to_json
 from surefoot.tools.tables.column_names import column_names
 
 CLIP = scenes.path("collapse")
@@ -32,63 +28,6 @@ def decoded(key, name="collapse"):
 
 def export(out, *words, recording=CLIP):
     assert main(["export", str(recording), "--out", str(out), *words]) == 0
-
-
-def in_json(value):
-    """What JSON makes of a field."""
-    if isinstance(value, np.ndarray):
-        return [in_json(each) for each in value]
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
-    if isinstance(value, np.generic):
-        return value.item()
-    return list(value) if isinstance(value, tuple) else value
-
-
-# Foxglove and PlotJuggler -------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", ["collapse", "map"])
-def test_every_message_is_there_as_json(tmp_path, name):
-    export(tmp_path / "a.mcap", "--to", "json-mcap", recording=scenes.path(name))
-    told: dict[str, list] = {}
-    with (tmp_path / "a.mcap").open("rb") as file:
-        for schema, channel, message in make_reader(file, validate_crcs=True).iter_messages():
-            assert (channel.message_encoding, schema.encoding) == ("json", "jsonschema")
-            told.setdefault(channel.topic, []).append((message.log_time, json.loads(message.data)))
-    assert {"state/estimate", "fsm/reference", "fsm/event"} <= told.keys() and "mpc/policy" not in told
-    assert "scene" in told and told.pop("scene")
-    for key, messages in told.items():
-        expected = decoded(key, name)
-        assert len(messages) == len(expected)
-        for (log_time, fields), message in zip(messages, expected, strict=True):
-            assert log_time == round(1e9 * message.t)
-            assert fields == {field: in_json(getattr(message, field)) for field in specs(type(message))}
-
-
-def test_a_schema_says_what_the_messages_are(tmp_path):
-    export(tmp_path / "a.mcap", "--to", "json-mcap", "--topics", "state/estimate,mpc/policy")
-    with (tmp_path / "a.mcap").open("rb") as file:
-        schemas = {each.name: json.loads(each.data) for each in make_reader(file).get_summary().schemas.values()}
-    assert schemas.keys() == {"surefoot.StateEstimate", "surefoot.Policy"}
-    estimate = schemas["surefoot.StateEstimate"]
-    feet = estimate["properties"]["p_WF"]
-    assert estimate["type"] == "object" and feet["type"] == "array" and feet["unit"] == "m"
-    assert feet["items"] == {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
-    assert estimate["properties"]["contact"]["items"] == {"type": "boolean"}
-
-
-def test_what_is_no_number_is_null():
-    grid = ElevationGrid(height_m=np.array([[0.5, np.nan]], np.float32))
-    assert json.loads(to_json(grid))["height_m"] == [[0.5, None]]
-
-
-def test_times_choose_what_is_exported(tmp_path):
-    words = ("--to", "json-mcap", "--topics", "hw/state", "--from", "23.4", "--until", "23.5")
-    export(tmp_path / "a.mcap", *words)
-    with (tmp_path / "a.mcap").open("rb") as file:
-        times = [message.log_time / 1e9 for _, _, message in make_reader(file).iter_messages()]
-    assert times == [message.t for message in decoded("hw/state") if 23.4 <= message.t <= 23.5]
 
 
 # Numbers ------------------------------------------------------------------------------------------------
