@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import struct
 from collections import Counter
 from collections.abc import Collection, Iterator
@@ -17,6 +18,7 @@ from mcap.reader import make_reader
 from mcap.records import Channel, Chunk
 from mcap.stream_reader import breakup_chunk, get_chunk_data_stream
 
+from surefoot.bus.errors import RecordingError
 from surefoot.bus.recording.reader import Recorded, Recording, journal_end
 from surefoot.bus.recording.writer import BATCH, DIGEST
 
@@ -34,7 +36,7 @@ _MAGIC_BYTES = 8
 _ALL = range(1 << 16)  # channels that a file can have
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Part:
     """Some successive messages of the file, compressed together.
 
@@ -114,14 +116,12 @@ class RecordingIndex:
 
         Where the file is damaged they end, and `damage` says so.
         """
-        wanted = {
-            number
-            for number, channel in self._map.channels.items()
-            if channel.topic == key and channel.message_encoding != DIGEST
-        }
+        wanted, parts = self._numbers(key), self.parts(key)
         with self.path.open("rb") as file:
-            for part in self._map.parts:
-                if part.last_ns < first_ns or part.first_ns > last_ns or wanted.isdisjoint(part.channels):
+            if 2 * len(parts) < len(self._map.parts):  # else the system reads ahead what lies between them
+                os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_RANDOM)
+            for part in parts:
+                if part.last_ns < first_ns or part.first_ns > last_ns:
                     continue
                 try:
                     data = _unpacked(file, part)
@@ -133,7 +133,34 @@ class RecordingIndex:
                     if first_ns <= t_ns <= last_ns:
                         yield Recorded(key, t_ns, seq, payload)
 
+    def parts(self, key: str) -> list[Part]:
+        """Where messages of a topic are, in the order in which they were written."""
+        wanted = self._numbers(key)
+        return [part for part in self._map.parts if not wanted.isdisjoint(part.channels)]
+
+    def unpack(self, part: Part) -> list[Recorded]:
+        """All messages of a part, but for digests.
+
+        Raises:
+            RecordingError: it cannot be read.
+        """
+        topics = {n: each.topic for n, each in self._map.channels.items() if each.message_encoding != DIGEST}
+        try:
+            with self.path.open("rb") as file:
+                data = _unpacked(file, part)
+        except Exception as error:  # whatever a decompressor says of bytes that were changed
+            raise RecordingError(f"{self.path}: a part cannot be read ({error})") from None
+        return [Recorded(topics[n], t_ns, seq, payload) for n, seq, t_ns, payload in _messages(data, topics)]
+
     # How it is found ------------------------------------------------------------------------------------
+
+    def _numbers(self, key: str) -> set[int]:
+        """Channels that hold the messages of a topic."""
+        return {
+            number
+            for number, channel in self._map.channels.items()
+            if channel.topic == key and channel.message_encoding != DIGEST
+        }
 
     def _counts(self, digests: bool) -> dict[str, int]:
         found: Counter[str] = Counter()

@@ -44,13 +44,13 @@ class RecordingSource:
             raise RecordingError(f"{path}: nothing to be drawn: neither state/estimate nor fsm/reference is in it")
         self.deployment, unknown = recorded_deployment(index.recording)
         self.title = f"Surefoot, {path.name}"
+        self.begin_t, self.end_t = index.begin_t, index.end_t
+        self._rare = sorted((each for key in RARE for each in index.messages(key)), key=lambda each: each.t)
+        self._rare_t = [each.t for each in self._rare]
         self._notes = (
             [f"the file is incomplete: {index.damage}; up to its end it can be read"] if index.damage else []
         )
         self._notes += [f"{key}: unknown to this version, left out" for key in unknown]
-        self.begin_t, self.end_t = index.begin_t, index.end_t
-        self._rare = sorted((each for key in RARE for each in index.messages(key)), key=lambda each: each.t)
-        self._rare_t = [each.t for each in self._rare]
         self._told = 0
         self.heard = Heard()
         self.playing, self.speed = True, 1.0

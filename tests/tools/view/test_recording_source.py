@@ -6,9 +6,11 @@ import scenes
 
 from surefoot.bus.codec import decode, encode
 from surefoot.bus.errors import RecordingError
+from surefoot.bus.recording.index import RecordingIndex as Index
 from surefoot.bus.recording.reader import Recording
 from surefoot.bus.topics import TOPICS
 from surefoot.tools.cli import main
+from surefoot.tools.view.history import RARE
 from surefoot.tools.view.recording_index import RecordingIndex
 from surefoot.tools.view.recording_source import RecordingSource
 
@@ -34,6 +36,22 @@ def test_the_newest_message_of_every_topic_is_found_at_every_instant():
 def test_the_same_message_is_the_same_object():
     index = RecordingIndex(CLIP)
     assert index.newest("fsm/event", 7.5) is index.newest("fsm/event", 7.5)
+
+
+def test_nothing_is_read_that_is_not_shown(tmp_path):
+    """A file of gigabytes is open at once: what lies in its middle does not matter until it is looked at."""
+    path, clip = tmp_path / "a.mcap", Index(CLIP)
+    rare = {part.offset for key in RARE for part in clip.parts(key)}
+    hidden = next(part for part in clip.parts("state/estimate")[1:-1] if part.offset not in rare)
+    inside = [each.t_ns for each in clip.unpack(hidden) if each.key == "state/estimate"]
+    content = bytearray(CLIP.read_bytes())
+    content[hidden.offset : hidden.offset + 1000] = b"\xff" * 1000
+    path.write_bytes(content)
+    source = RecordingSource(path)
+    source.seek(source.end_t)
+    assert source.words == "" and source.heard.estimate is not None
+    source.seek(inside[len(inside) // 2] / 1e9)
+    assert "a part cannot be read" in source.words
 
 
 def test_a_recording_that_was_cut_off_is_shown_up_to_its_end_and_says_so(tmp_path):
