@@ -16,12 +16,12 @@ from surefoot.bus.topics import PROCESSES, TOPICS, processes
 from surefoot.components import clock_messages as clock
 from surefoot.components.component import Life
 from surefoot.components.deployment_desk import serve_deployment
+from surefoot.components.input_sequence import KEPT
 from surefoot.components.operator_desk import OperatorDesk
 from surefoot.components.process_end import ProcessEnd
 from surefoot.components.registry import component_class
 from surefoot.components.scheduler import NS, Executor, Scheduler
 from surefoot.components.stepper import Stepper
-from surefoot.components.topic_buffer import KEPT
 from surefoot.config.deployment import Deployment
 
 _LOOK_S = 0.2

@@ -14,7 +14,7 @@ from surefoot.bus.service_keys import BEAT, LOG, REFUSED, REQUEST, TUNE
 from surefoot.bus.session import Session
 from surefoot.components import clock_messages as clock
 from surefoot.components.heartbeat import Heartbeat
-from surefoot.components.topic_buffer import KEPT
+from surefoot.components.input_sequence import KEPT
 from surefoot.config.deployment import Deployment
 from surefoot.config.tuning import Tunings
 from surefoot.config.typed_toml import ConfigError

@@ -13,12 +13,8 @@ from surefoot.bus.message import Message
 from surefoot.bus.session import Marked, Session
 from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components.component import Inbox
+from surefoot.components.input_sequence import KEPT, WINDOW, InputSequence
 
-KEPT = 32
-"""Messages of a topic that its writer keeps for a reader that comes late, or again."""
-
-_WINDOW = 256  # messages wait for a reader at the most; a number further ahead than this is not the writer's
-_WRITERS = 8  # of one topic are listened to between two steps
 _ON_ITS_WAY_S = 0.3
 _MISFITS = 8  # so many messages out of sequence in a row are a new sequence
 _SILENT_S = 1.0  # a writer that has been silent for so long may be another than before
@@ -31,39 +27,6 @@ Ask = Callable[[str], Sequence[bytes] | None]
 def _nobody(key: str) -> list[bytes]:
     """Nobody keeps any message of a topic."""
     return []
-
-
-class _Topic:
-    """One input: bytes not yet decoded, messages not yet visible, and where the writer's sequence stands."""
-
-    def __init__(self, key: str):
-        self.kind = TOPICS[key].message
-        self.waiting: dict[bytes, deque[bytes]] = {}
-        self.early: dict[int, tuple[Message, int]] = {}
-        self.had: dict[int, int] = {}
-        self.writers: dict[int, bytes] = {}
-        self.strange: deque[tuple[Message, bytes]] = deque()
-        self.trusted: dict[str, frozenset[bytes]] | None = None
-        self.arrivals = self.first = self.next = self.misfits = 0
-        self.boot, self.t = -1, 0.0
-
-    def store(self, payload: bytes) -> None:
-        """Keep bytes until the next step; each writer has room of its own, whatever the others send."""
-        writer = getattr(payload, "writer", b"")
-        if writer in self.waiting or len(self.waiting) < _WRITERS:
-            self.waiting.setdefault(writer, deque(maxlen=_WINDOW)).append(payload)
-        self.arrivals += 1
-
-    def jump(self, seq: int) -> None:
-        """Read on from a sequence number; what lies before it is of no interest."""
-        self.first = self.next = seq
-        for old in [each for each in self.early if each < seq]:
-            del self.early[old]
-
-    def is_of_writer(self, message: Message, payload: bytes) -> bool:
-        """Whether the session that was heard first of this boot has sent it."""
-        writer = getattr(payload, "writer", b"")
-        return self.writers.setdefault(message.boot, writer) == writer
 
 
 class TopicBuffers:
@@ -93,7 +56,7 @@ class TopicBuffers:
         self.last_error = ""
         self._errors: dict[str, str] = {}
         self._arrived = Condition()
-        self._topics = {key: _Topic(key) for key in keys}
+        self._topics = {key: InputSequence(key) for key in keys}
         self._trigger, self._complete = trigger, complete
         self._newest: dict[str, Callable[[], bytes | None]] = {}
         self._trusted: dict[str, frozenset[bytes]] | None = None
@@ -144,7 +107,7 @@ class TopicBuffers:
             topic = self._topics[key]
             topic.boot, topic.next, topic.first = boot, following, following
 
-    def _in_sequence(self, key: str, topic: _Topic, message: Message, payload: bytes) -> bool:
+    def _in_sequence(self, key: str, topic: InputSequence, message: Message, payload: bytes) -> bool:
         """Whether a message follows the last one; a restarted writer, or a long row of misfits, begins anew."""
         known = topic.is_of_writer(message, payload)
         if known and message.boot == topic.boot and message.seq < topic.first:
@@ -218,7 +181,7 @@ class TopicBuffers:
     def _await_next(
         self,
         key: str,
-        topic: _Topic,
+        topic: InputSequence,
         wanted: int,
         inbox: Inbox,
         timeout_s: float,
@@ -252,28 +215,24 @@ class TopicBuffers:
                 self.drop(f"{key}: kept by a second publisher")
         return vouched
 
-    def _take(self, key: str, topic: _Topic, wanted: int, inbox: Inbox) -> None:
+    def _take(self, key: str, topic: InputSequence, wanted: int, inbox: Inbox) -> None:
         """Hand over, in order and without a gap, what is here up to the count."""
-        while topic.next < wanted and topic.next in topic.early:
-            message, topic.had[topic.next] = topic.early.pop(topic.next)
-            topic.boot = max(topic.boot, message.boot)
-            topic.had.pop(topic.next - KEPT, None)
-            topic.next += 1
+        for message in topic.take(wanted):
             inbox.deliver(key, message)
 
-    def _wait(self, topic: _Topic, timeout_s: float) -> bool:
+    def _wait(self, topic: InputSequence, timeout_s: float) -> bool:
         """Until something has arrived; false when the time is up, whatever arrives."""
         with self._arrived:
             return timeout_s > 0.0 and self._arrived.wait_for(lambda: bool(topic.waiting), timeout_s)
 
-    def _take_waiting(self, topic: _Topic) -> list[bytes]:
+    def _take_waiting(self, topic: InputSequence) -> list[bytes]:
         if not topic.waiting:
             return []
         with self._arrived:
             waiting, topic.waiting = topic.waiting, {}
         return [payload for queue in waiting.values() for payload in queue]
 
-    def _place(self, key: str, topic: _Topic, kept: Iterable[bytes], least: int) -> None:
+    def _place(self, key: str, topic: InputSequence, kept: Iterable[bytes], least: int) -> None:
         """Put what was kept for this reader in its place, from a sequence number on."""
         for payload in kept:
             message = self._decode(key, payload)
@@ -282,7 +241,7 @@ class TopicBuffers:
                 if there is None or message.boot > there[0].boot:
                     topic.early[message.seq] = message, hash(payload)
 
-    def _sort(self, key: str, topic: _Topic) -> None:
+    def _sort(self, key: str, topic: InputSequence) -> None:
         """Decode what has arrived and put each message in its place, if that is free."""
         payloads = self._take_waiting(topic)
         if topic.trusted is not self._trusted:
@@ -299,7 +258,7 @@ class TopicBuffers:
                 continue
             if not self._trusts(key, payload):
                 topic.strange.append((message, payload))
-            elif there is None and topic.next <= seq < topic.next + _WINDOW:
+            elif there is None and topic.next <= seq < topic.next + WINDOW:
                 topic.early[seq] = message, mark
             elif there is not None and message.boot > there[0].boot:
                 topic.early[seq] = message, mark  # the writer was restarted before its step was over
@@ -314,14 +273,14 @@ class TopicBuffers:
             return True
         return payload.writer in self._trusted[TOPICS[key].writer]
 
-    def _drop_strangers(self, key: str, topic: _Topic) -> None:
+    def _drop_strangers(self, key: str, topic: InputSequence) -> None:
         """Drop what is not, and will hardly be, of a process that the clock's master knows.
 
         One that has just come up may be heard before the release that tells of it.
         """
-        kept: deque[tuple[Message, bytes]] = deque(maxlen=_WINDOW)
+        kept: deque[tuple[Message, bytes]] = deque(maxlen=WINDOW)
         for message, payload in topic.strange:
-            if topic.next <= message.seq < topic.next + _WINDOW:
+            if topic.next <= message.seq < topic.next + WINDOW:
                 kept.append((message, payload))
             else:
                 self._drop_misfit(key, topic, message, known=False)
@@ -334,7 +293,7 @@ class TopicBuffers:
             self.drop(f"{key}: {error}")
             return None
 
-    def _drop_misfit(self, key: str, topic: _Topic, message: Message, known: bool) -> None:
+    def _drop_misfit(self, key: str, topic: InputSequence, message: Message, known: bool) -> None:
         why = f"is out of place, next is {topic.next}: a second publisher?" if known else "is a second publisher's"
         self.drop(f"{key}: message {message.seq} {why}")
 

@@ -6,8 +6,9 @@ from surefoot.bus.session import Marked
 from surefoot.bus.topics import PROCESSES
 from surefoot.components.component import Inbox
 from surefoot.components.elevation_map.elevation_map import ElevationMap
+from surefoot.components.input_sequence import KEPT
 from surefoot.components.stepper import Stepper
-from surefoot.components.topic_buffer import KEPT, TopicBuffers
+from surefoot.components.topic_buffer import TopicBuffers
 from surefoot.config.deployment import Deployment, Run
 
 KEY = "joint/command"
