@@ -6,12 +6,11 @@ from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
-import pinocchio as pin
 
-from surefoot.bus.messages import FsmEvent, MotionReference, OperatorAnswer, OperatorCommand, StateEstimate
+from surefoot.bus.messages import FsmEvent, MotionReference, OperatorAnswer, OperatorCommand
 from surefoot.components.component import Component, Inbox, Outbox
-from surefoot.components.fsm.observation import Observation
-from surefoot.components.fsm.posture import Posture, posture_reference
+from surefoot.components.fsm.observation import Observation, Observer
+from surefoot.components.fsm.posture import Posture, farthest_joint, posture_reference
 from surefoot.components.fsm.probing_cycle import ProbingCycle
 from surefoot.components.fsm.state import State
 from surefoot.components.fsm.walk_commands import end, obey, turn_to
@@ -26,10 +25,7 @@ from surefoot.components.fsm.words import (
     taken,
 )
 from surefoot.components.memory import Memory
-from surefoot.components.robot_model import build_model
-from surefoot.components.robot_model.rotation import matrix_of, rpy_of
 from surefoot.config.deployment import Deployment
-from surefoot.config.robot import JOINT_NAMES
 
 _CUT = "cut by command"
 """Why the robot is damped; nothing gets it up before a person has said damp."""
@@ -76,8 +72,7 @@ class Fsm(Component):
         self._stand_q = np.tile(robot.nominal.stand_q, 4)
         self._lie_q = np.tile(robot.nominal.lie_q, 4)
         self._lower, self._upper = np.array(robot.position_range()).T
-        self._model = build_model(robot)
-        self._data = self._model.createData()
+        self._observer = Observer(robot)
         self._posture: Posture | None = Posture.DAMP
         self._reason = "waiting for a command"
         self._joint_from = self._joint_to = self._stand_q
@@ -97,7 +92,7 @@ class Fsm(Component):
         self.heed_tuning(inbox)
         self._t = t
         lost = self._lost(t, inbox)
-        now = None if lost else self._observe(t, inbox.latest("state/estimate"))
+        now = None if lost else self._observer.observe(t, inbox.latest("state/estimate"))
         if lost and self._posture is not Posture.DAMP:
             self._damp(lost)
         for message in inbox.new("operator/command"):
@@ -248,13 +243,10 @@ class Fsm(Component):
 
     def _stood_up(self, now: Observation) -> None:
         """A robot whose joints have not followed does not stand, whatever was asked of them."""
-        error = np.abs(now.estimate.q - self._joint_to)
-        worst = int(np.argmax(error))
-        if error[worst] > self._settings.posture_error_max:
-            self._damp(
-                f"did not stand up: {JOINT_NAMES[worst]} is {error[worst]:.2f} rad from its posture, limit "
-                f"{self._settings.posture_error_max} rad"
-            )
+        joint, error = farthest_joint(now.estimate.q, self._joint_to)
+        limit = self._settings.posture_error_max
+        if error > limit:
+            self._damp(f"did not stand up: {joint} is {error:.2f} rad from its posture, limit {limit} rad")
             return
         self._cycle.stand_up(now)
         self._enter(Posture.STAND, "stood up")
@@ -281,10 +273,10 @@ class Fsm(Component):
 
     def _check_hold(self, now: Observation) -> None:
         """A joint that is driven away, by a wrong sign or order, shows while the gains are still low."""
-        error = np.abs(now.estimate.q - self._joint_to)
-        worst, limit = int(np.argmax(error)), self._settings.hold_error
-        if error[worst] > limit:
-            self._damp(f"{JOINT_NAMES[worst]} left its hold by {error[worst]:.2f} rad, limit {limit} rad")
+        joint, error = farthest_joint(now.estimate.q, self._joint_to)
+        limit = self._settings.hold_error
+        if error > limit:
+            self._damp(f"{joint} left its hold by {error:.2f} rad, limit {limit} rad")
         elif self._wish and now.t >= self._joint_t1:
             self._move_joints(Posture.STAND_UP, self._stand_q, now, f"commanded {self._wish}")
 
@@ -319,12 +311,6 @@ class Fsm(Component):
 
     # Messages -------------------------------------------------------------------------------------------
 
-    def _observe(self, t: float, estimate: StateEstimate) -> Observation:
-        w, x, y, z = estimate.quat_WB
-        q = np.concatenate([estimate.p_WB, [x, y, z, w], estimate.q])
-        com_W = pin.centerOfMass(self._model, self._data, q).copy()
-        return Observation(t, estimate, com_W, rpy_of(matrix_of(estimate.quat_WB)))
-
     def _reference(self, t: float) -> MotionReference:
         if self._posture in (None, Posture.STAND):
             message = self._cycle.message(t)
@@ -342,13 +328,7 @@ class Fsm(Component):
         )
 
     def _send(self, outbox: Outbox) -> None:
-        questions = self._cycle.questions
-        if questions.foothold_request is not None:
-            outbox.publish("foothold/request", questions.foothold_request)
-            questions.foothold_request = None
-        if questions.plan_request is not None:
-            outbox.publish("trajopt/request", questions.plan_request)
-            questions.plan_request = None
+        self._cycle.questions.send(outbox)
         for event in self._events:
             outbox.publish("fsm/event", event)
         self._events.clear()

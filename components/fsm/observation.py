@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio as pin
 
 from surefoot.bus.messages import StateEstimate
-from surefoot.components.robot_model.rotation import matrix_of_rpy
+from surefoot.components.robot_model import build_model
+from surefoot.components.robot_model.rotation import matrix_of, matrix_of_rpy, rpy_of
+from surefoot.config.robot import Robot
 
 
 @dataclass(frozen=True)
@@ -37,3 +40,18 @@ class Observation:
     def normal_force(self, leg: int) -> float:
         """Estimated force along the local normal on a foot [N]."""
         return float(self.estimate.force_W[leg] @ self.estimate.normal_W)
+
+
+class Observer:
+    """Derives from an estimate what the state machine wants to know besides."""
+
+    def __init__(self, robot: Robot):
+        self._model = build_model(robot)
+        self._data = self._model.createData()
+
+    def observe(self, t: float, estimate: StateEstimate) -> Observation:
+        """The observation at time `t` [s]."""
+        w, x, y, z = estimate.quat_WB
+        q = np.concatenate([estimate.p_WB, [x, y, z, w], estimate.q])
+        com_W = pin.centerOfMass(self._model, self._data, q).copy()
+        return Observation(t, estimate, com_W, rpy_of(matrix_of(estimate.quat_WB)))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from surefoot.bus.messages import ControlMode, MotionReference
+from surefoot.config.robot import JOINT_NAMES
 
 
 class Posture(StrEnum):
@@ -18,6 +19,13 @@ class Posture(StrEnum):
     STAND_UP = "STAND_UP"
     STAND = "STAND"
     SIT_DOWN = "SIT_DOWN"
+
+
+def farthest_joint(q: np.ndarray, posture_q: np.ndarray) -> tuple[str, float]:
+    """The joint of angles `q` (12,) farthest from a posture (12,), and how far it is [rad]."""
+    error = np.abs(q - posture_q)
+    worst = int(np.argmax(error))
+    return JOINT_NAMES[worst], error[worst]
 
 
 def posture_reference(t: float, posture: Posture, reason: str, **joints: Any) -> MotionReference:

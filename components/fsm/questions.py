@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from surefoot.bus.messages import FootholdRegions, FootholdRequest, Plan, PlanRequest
+from surefoot.components.component import Outbox
 from surefoot.components.memory import Memory
 
 
@@ -12,7 +13,7 @@ class Questions:
     """Requests to publish, each with an id by which its answer is known: an answer to an older one is ignored.
 
     Attributes:
-        foothold_request, plan_request: to publish, or None; the owner takes them away.
+        foothold_request, plan_request: to publish, or None.
     """
 
     memory = Memory("_id", foothold_request=FootholdRequest, plan_request=PlanRequest)
@@ -47,6 +48,15 @@ class Questions:
             normal_W=normal_W,
             **figures,
         )
+
+    def send(self, outbox: Outbox) -> None:
+        """Publish what is to be asked, once."""
+        if self.foothold_request is not None:
+            outbox.publish("foothold/request", self.foothold_request)
+            self.foothold_request = None
+        if self.plan_request is not None:
+            outbox.publish("trajopt/request", self.plan_request)
+            self.plan_request = None
 
     def answered_by(self, message: FootholdRegions | Plan) -> bool:
         """Whether a message answers the last question."""

@@ -31,7 +31,7 @@ class Walker(Puppet):
         self.fsm = Fsm(Deployment(fsm=self.settings))
         self.fsm._cycle, self.said, self.asked, self.answers = self.cycle, [], {}, []
         self.cycle._report = self.cycle._phases._report = self.fsm._report
-        self.fsm._observe = lambda t, estimate: replace(self.observe(), estimate=estimate)
+        self.fsm._observer.observe = lambda t, estimate: replace(self.observe(), estimate=estimate)
         self.inbox, self.outbox = Inbox(Fsm.inputs), Outbox(Fsm.outputs, self._hear)
         self.reference = None
         self.command(command)
