@@ -25,7 +25,7 @@ def farthest_joint(q: np.ndarray, posture_q: np.ndarray) -> tuple[str, float]:
     """The joint of angles `q` (12,) farthest from a posture (12,), and how far it is [rad]."""
     error = np.abs(q - posture_q)
     worst = int(np.argmax(error))
-    return JOINT_NAMES[worst], error[worst]
+    return JOINT_NAMES[worst], float(error[worst])
 
 
 def posture_reference(t: float, posture: Posture, reason: str, **joints: Any) -> MotionReference:
