@@ -54,6 +54,9 @@ class Process:
 CYCLE_HZ = 500.0
 """Of the robot's interface: how often its sensors are read and its motors get a command."""
 
+TOLD_S = 10.0
+"""What went wrong once, with a message or on the link to the robot, is told in a process's status for so long."""
+
 _WBC_EVERY = 2
 """The whole-body controller steps on every n-th cycle."""
 

@@ -54,7 +54,7 @@ class ClockMaster:
         table = processes(deployment.mpc.profile)
         self._stepper = Stepper(component_class("io")(deployment), self.session, table["io"], boot)
         self.refuse = self._stepper.buffers.drop
-        self._desk = OperatorDesk(self.session, self.refuse, deployment)
+        self._desk = OperatorDesk(self.session, self.refuse, self._stepper.buffers.incidents.note, deployment)
         self.writers: dict[str, list[bytes]] = {}
         self._remote = {name: RemoteExecutor(name, self) for name in PROCESSES if name != "io"}
         executors: dict[str, Executor] = {"io": _HostedExecutor(self._stepper, self), **self._remote}

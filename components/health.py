@@ -50,7 +50,7 @@ class Health:
         self._settings = settings_digest(component.deployment)
         self._recent: deque[float] = deque(maxlen=2000)
         self._told, self._told_steps = time.monotonic(), 0
-        self._seq = 0
+        self._seq = self._damaged = 0
 
     def stepped(self, step_ms: float) -> None:
         """Note one step's wall time."""
@@ -75,7 +75,7 @@ class Health:
             boot=self.boot,
             process=self._component.name,
             life=self.life.value,
-            reason=self._words(),
+            reason=self._words(t),
             pid=os.getpid(),
             settings=self._settings,
             steps=self.steps,
@@ -94,10 +94,12 @@ class Health:
         self._session.put(key, payload, lossless=False)
         self._journal.note_message(t, key, status.seq, payload)
 
-    def _words(self) -> str:
-        """All there is to say, the gravest first."""
-        bad = f"dropped {self._buffers.last_error}" if self._buffers.bad else ""
-        lost = self._session.damaged
-        damaged = f"{lost} messages came damaged over a link that broke, and were dropped" if lost else ""
-        said = self.reason, self._component.trouble, self._component.untuned, self.lost, bad, damaged, self.note
+    def _words(self, t: float) -> str:
+        """All there is to say at time `t` [s], the gravest first."""
+        incidents = self._buffers.incidents
+        if (lost := self._session.damaged) > self._damaged:
+            self._damaged = lost
+            incidents.note("link", f"{lost} messages came damaged over a link that broke, and were dropped")
+        component = self._component
+        said = self.reason, component.trouble, component.untuned, self.lost, incidents.words(t), self.note
         return "; ".join(words for words in said if words)

@@ -45,17 +45,23 @@ class OperatorDesk:
     """
 
     def __init__(
-        self, session: Session, refuse: Callable[[str], None], deployment: Deployment, lossless: bool = True
+        self,
+        session: Session,
+        drop: Callable[[str], None],
+        refuse: Callable[[str, str], None],
+        deployment: Deployment,
+        lossless: bool = True,
     ):
         """For the process that holds the bus.
 
         Args:
             session: the bus.
-            refuse: told, by key, of each request that is no word, or cannot be passed on now.
+            drop: told of each request that is no word, which counts as a bad message.
+            refuse: told of each that cannot be passed on now: its key, and in words why.
             deployment: of the run: its heartbeat, and what can be tuned.
             lossless: wait for a reader that is late; in real time io waits for nobody.
         """
-        self._session, self._refuse, self._lossless = session, refuse, lossless
+        self._session, self._drop, self._refuse, self._lossless = session, drop, refuse, lossless
         self._requests: deque[tuple[str, bytes]] = deque(maxlen=KEPT)
         self._kept: dict[str, deque[bytes]] = {key: deque(maxlen=KEPT) for key in (COMMAND, TUNING)}
         self._sent = dict.fromkeys(self._kept, 0)
@@ -83,7 +89,7 @@ class OperatorDesk:
             key, asked = self._requests.popleft()
             words = asked.decode(errors="replace")
             if len(words) > _LONGEST[key] or not words.isprintable() or "\ufffd" in words:
-                self._refuse(f"{key}: {asked[: _LONGEST[key]]!r:.80} is no command")
+                self._drop(f"{key}: {asked[: _LONGEST[key]]!r:.80} is no command")
             elif words.partition(": ")[0] not in _ALONE and (missing := self._heartbeat.missing):
                 self._turn_down(key, words, f"{words}: {missing}; start surefoot heartbeat, then command again")
             elif key == REQUEST:
@@ -119,7 +125,7 @@ class OperatorDesk:
         self._sent[key] += 1
 
     def _turn_down(self, key: str, request: str, why: str) -> None:
-        self._refuse(f"{key}: {why}")
+        self._refuse(key, f"refused {key}: {why}")
         self._session.put(REFUSED, pack_refusal(request, why), self._lossless)
 
     def _log(self, last: bool = False) -> None:

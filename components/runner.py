@@ -251,8 +251,8 @@ class HubRunner(Runner):
 
     def __init__(self, deployment: Deployment, name: str, boot: int = 0, parent: int = 0):
         super().__init__(deployment, name, boot, parent)
-        drop = self._stepper.buffers.drop
-        self._desk = OperatorDesk(self._session, drop, deployment, lossless=False)
+        buffers = self._stepper.buffers
+        self._desk = OperatorDesk(self._session, buffers.drop, buffers.incidents.note, deployment, lossless=False)
         serve_time(self._session, deployment)
         serve_deployment(self._session, deployment)
 

@@ -13,6 +13,7 @@ from surefoot.bus.message import Message
 from surefoot.bus.session import Marked, Session
 from surefoot.bus.topics import PROCESSES, TOPICS
 from surefoot.components.component import Inbox
+from surefoot.components.incidents import Incidents
 from surefoot.components.input_sequence import KEPT, WINDOW, InputSequence
 
 _ON_ITS_WAY_S = 0.3
@@ -40,7 +41,7 @@ class TopicBuffers:
 
     Attributes:
         bad: messages dropped: malformed, or not of the topic's writer.
-        last_error: what was wrong with the latest of them on each key, the newest first.
+        incidents: what was wrong with the latest of them on each key.
     """
 
     def __init__(self, keys: tuple[str, ...], trigger: str | None = None, complete: tuple[str, ...] = ()):
@@ -53,8 +54,7 @@ class TopicBuffers:
             complete: streams of which every message is wanted.
         """
         self.bad = 0
-        self.last_error = ""
-        self._errors: dict[str, str] = {}
+        self.incidents = Incidents()
         self._arrived = Condition()
         self._topics = {key: InputSequence(key) for key in keys}
         self._trigger, self._complete = trigger, complete
@@ -300,7 +300,4 @@ class TopicBuffers:
     def drop(self, why: str) -> None:
         """Count a bad message; `why` begins with its key."""
         self.bad += 1
-        key = why.partition(":")[0]
-        self._errors.pop(key, None)
-        self._errors[key] = why
-        self.last_error = "; dropped ".join(reversed(self._errors.values()))
+        self.incidents.note(why.partition(":")[0], f"dropped {why}")

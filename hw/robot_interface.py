@@ -64,7 +64,10 @@ class RobotInterface(Protocol):
 
     @property
     def trouble(self) -> str:
-        """In words what is amiss though it goes on: with the link, or with the last law; empty when nothing is."""
+        """In words what is amiss though it goes on; empty when nothing is.
+
+        With the last law, or with the link in the last `TOLD_S` seconds.
+        """
 
     def read(self) -> Sensors:
         """The newest sensor values.

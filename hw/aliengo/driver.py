@@ -53,7 +53,7 @@ class AliengoDriver:
 
     @property
     def trouble(self) -> str:
-        """What of the last law did not fit the packet; what was last amiss on the link."""
+        """What of the last law did not fit the packet; what was amiss on the link in the last `TOLD_S` seconds."""
         return "; ".join(words for words in (*self._encoder.limited, self._recorder.trouble) if words)
 
     def read(self) -> Sensors:

@@ -7,9 +7,11 @@ from dataclasses import dataclass, fields
 from statistics import median
 from threading import Lock
 
+from surefoot.bus.topics import CYCLE_HZ, TOLD_S
 from surefoot.hw.errors import Flaw, PacketError
 
 _WINDOW = 500
+_TOLD = round(TOLD_S * CYCLE_HZ)  # cycles
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class LinkRecorder:
         self._lock = Lock()
         self._counts = Counter(dict.fromkeys(_COUNTED, 0))
         self._answers: deque[tuple[float, float] | None] = deque(maxlen=_WINDOW)  # arrival, latency [s]
-        self._trouble = ""
+        self._trouble, self._troubled = "", 0  # in words, and in which cycle
 
     def states(self, new: int, duplicates: int, old: int) -> None:
         """States came that could be read."""
@@ -56,13 +58,13 @@ class LinkRecorder:
         """A packet came that could not."""
         with self._lock:
             self._counts["checksum_errors" if error.flaw == Flaw.CHECKSUM else "refused"] += 1
-            self._trouble = str(error)
+            self._note(str(error))
 
     def socket_error(self, said: str) -> None:
         """The socket complains."""
         with self._lock:
             self._counts["socket_errors"] += 1
-            self._trouble = said
+            self._note(said)
 
     def command(self, sent: float, answered: float | None, overruns: int) -> None:
         """One cycle is over.
@@ -78,8 +80,9 @@ class LinkRecorder:
 
     @property
     def trouble(self) -> str:
-        """As of the statistics."""
-        return self._trouble
+        """What was last amiss in a packet or with the socket; empty when nothing was in the last seconds."""
+        with self._lock:
+            return self._trouble if self._cycles - self._troubled < _TOLD else ""
 
     def statistics(self) -> LinkStatistics:
         with self._lock:
@@ -95,3 +98,11 @@ class LinkRecorder:
             latency_max_ms=max(latencies, default=0.0),
             trouble=trouble,
         )
+
+    @property
+    def _cycles(self) -> int:
+        return self._counts["commands"] + self._counts["overruns"]
+
+    def _note(self, trouble: str) -> None:
+        """Whoever calls this holds the lock."""
+        self._trouble, self._troubled = trouble, self._cycles

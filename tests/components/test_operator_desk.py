@@ -35,9 +35,12 @@ class Side:
     t = 50.0
 
     def __init__(self, heartbeat_s):
-        self.bus, self.refused = Bus(), []
+        self.bus, self.dropped, self.refused = Bus(), [], []
         deployment = Deployment(operator=Operator(heartbeat_s=heartbeat_s))
-        self.desk = OperatorDesk(self.bus, self.refused.append, deployment)
+        self.desk = OperatorDesk(self.bus, self.dropped.append, self._on_refusal, deployment)
+
+    def _on_refusal(self, key, words):
+        self.refused.append(words)
 
     def say(self, key, text=""):
         self.bus.ears[key](key, text.encode())
@@ -62,11 +65,11 @@ def side(monkeypatch):
     return make
 
 
-def test_what_is_asked_is_dated_and_what_is_no_word_is_refused(side):
+def test_what_is_asked_is_dated_and_what_is_no_word_is_dropped(side):
     one = side()
     one.say(REQUEST, "forward")
     one.say(REQUEST, "x" * 65)
-    assert one.commands(3.0) == [(3.0, "forward")] and "is no command" in one.refused[0]
+    assert one.commands(3.0) == [(3.0, "forward")] and "is no command" in one.dropped[0] and not one.refused
 
 
 def test_what_is_asked_at_the_robot_goes_first(side):
@@ -89,8 +92,9 @@ def test_without_the_heartbeat_the_robot_is_told_to_sit_once_and_obeys_no_comman
         one.say(REQUEST, word)
     assert [command for _, command in one.commands()] == ["sit", "damp", "cut"]
     assert [words.split(";")[0] for words in one.refused] == [
-        f"operator/request: {word}: no heartbeat for 2 s" for word in ("stand", "forward")
+        f"refused operator/request: {word}: no heartbeat for 2 s" for word in ("stand", "forward")
     ]
+    assert not one.dropped  # a request that is turned down is no bad message
     one.say(BEAT)
     assert one.commands() == []  # nothing moves by itself when it is back
     one.say(REQUEST, "stand")

@@ -292,7 +292,9 @@ def test_a_release_that_comes_again_is_answered_again_without_another_step(follo
     assert fsm._stepper.component.steps == 2 and len(bus.said("fsm/event")) == 2
     first, *more = [clock.unpack_hello(payload) for payload in bus.said(f"{clock.HELLO}/fsm")]
     assert first == clock.Hello(0) and set(more) == {clock.Hello(0, new=False)}
-    assert fsm._stepper.buffers.bad == 10 and "a second clock releases" in fsm._stepper.buffers.last_error
+    assert fsm._stepper.buffers.bad == 10 and "a second clock releases" in fsm._stepper.buffers.incidents.words(
+        0.0
+    )
 
 
 def test_a_clock_that_goes_back_belongs_to_another_run(follower):

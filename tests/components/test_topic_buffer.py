@@ -75,7 +75,7 @@ def test_a_second_publisher_is_told_and_dropped():
     assert reader.read(1) == [(0, 0)] and reader.buffers.bad == 2
     reader.put(packed(0, t=8.0), packed(1))
     assert reader.read(2) == [(1, 0)] and reader.buffers.bad == 3
-    assert reader.buffers.last_error.startswith(f"{KEY}: message 0 is out of place")
+    assert reader.buffers.incidents.words(0.0).startswith(f"dropped {KEY}: message 0 is out of place")
 
 
 def test_what_a_restarted_writer_says_replaces_what_was_not_visible_yet():
@@ -108,7 +108,7 @@ def test_what_another_session_says_is_dropped_however_plausible():
     reader.put(marked(packed(0)), *(marked(packed(seq, t=9.0), OTHER) for seq in range(4)), marked(packed(1)))
     reader.buffers.trust({"wbc": [WRITER]})
     assert reader.read(2) == [(0, 0), (1, 0)] and reader.inbox.latest(KEY).t == 0.0
-    assert reader.buffers.bad == 2 and "a second publisher's" in reader.buffers.last_error
+    assert reader.buffers.bad == 2 and "a second publisher's" in reader.buffers.incidents.words(0.0)
     reader.put(
         marked(packed(2)), marked(packed(10**6), OTHER), marked(packed(0), OTHER), marked(packed(3, t=9.0), b"")
     )

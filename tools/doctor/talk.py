@@ -105,7 +105,7 @@ class _Ear:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.heard.trouble = self.recorder.trouble
+        self.heard.trouble = self.recorder.statistics().trouble
         self._link.close()
 
     def exchange(self, packet: bytes, seconds: float, until_heard: bool = False) -> None:

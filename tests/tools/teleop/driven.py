@@ -57,7 +57,9 @@ class Driven:
         deployment = Deployment(operator=Operator(heartbeat_s=heartbeat_s), fsm=Settings(**settings))
         serve_deployment(self._session, deployment)
         self.refused, self.commands = [], []
-        self._desk = OperatorDesk(self._session, self.refused.append, deployment)
+        self._desk = OperatorDesk(
+            self._session, self.refused.append, lambda key, words: self.refused.append(words), deployment
+        )
         self.robot = DrivenPuppet(self._session, deployment.fsm)
         for key in ("operator/command", "operator/tuning"):
             self._session.subscribe(key, self._on_message)
