@@ -14,7 +14,7 @@ from surefoot.config.robot import JOINT_NAMES
 from surefoot.hw.aliengo.deadlines import Deadlines
 from surefoot.hw.aliengo.driver import AliengoDriver
 from surefoot.hw.gate.gate import Gate
-from surefoot.hw.robot_interface import MotorLaw, Sensors, damping_law
+from surefoot.hw.robot_interface import MotorLaw, Sensors, Stop, damping_law
 from surefoot.tools.calibration.joint_friction import swing
 from surefoot.tools.calibration.refusal import CannotCalibrate
 from surefoot.tools.calibration.samples import Samples, samples_of
@@ -26,7 +26,8 @@ class HungRobot:
     """Damps unless it is told to move; every command that moves passes the gate.
 
     Moving goes by the gains of swing legs, wbc.joint_kp and joint_kd, from one reference to the next: a joint that
-    is held back, or a trunk that swings, ends it and the robot damps.
+    is held back, or a trunk that swings, ends it and the robot damps. What is held on the robot's remote ends
+    everything, in the cycle in which it is read: as with io a cut takes the torque, anything else damps.
 
     Attributes:
         robot: the robot interface in use.
@@ -54,7 +55,11 @@ class HungRobot:
         return monotonic() - self._began if self._waits else self._cycles / CYCLE_HZ
 
     def rest(self, seconds: float) -> Samples:
-        """What it measures while it damps for so long."""
+        """What it measures while it damps for so long.
+
+        Raises:
+            CannotCalibrate: somebody stopped it at the remote. So do all that move it.
+        """
         begin, t, readings = self.t, [], []
         while self.t - begin < seconds:
             readings.append(self._cycle(self._damp))
@@ -141,4 +146,15 @@ class HungRobot:
             deadline, _ = self._deadlines.following(monotonic())
             sleep(max(deadline - monotonic(), 0.0))
         self._told = self.robot.read()
+        if self._told.stop:
+            self._end(self._told.stop)
         return self._told
+
+    def _end(self, stop: Stop) -> None:
+        words = "damped"
+        if stop == "cut":
+            self._gate.cut("buttons of the remote")
+            words = "no torque"
+        self.robot.write(self._gate.safe_law)
+        self.robot.advance()
+        raise CannotCalibrate(f"stopped at the remote: {words}; begin again when nobody is in its way")

@@ -14,7 +14,8 @@ Measure what one robot's sensors read when there is nothing to read, and write i
 hw.unit = "FILE" io takes it off every reading. What the file holds already and is not measured anew stays.
 
 --hung     the robot hangs, its feet free, and no stack runs: biases of the IMU, torque offset and noise, zeros of
-           the foot sensors. Damped; then, with your yes, each joint in turn swings slowly: friction.
+           the foot sensors. Damped; then, with your yes, each joint in turn swings slowly: friction. Ctrl-C ends
+           it, and so does a stop or a cut at the robot's remote.
 --standing the stack runs, and the robot stands still (surefoot command stand): biases of the IMU, scale of the
            foot sensors. Nothing is moved. Hung up first, with the same --out, it knows the torque offsets.
 

@@ -17,6 +17,7 @@ from surefoot.config.emulator import Emulator, Wire
 from surefoot.config.hw import Hw
 from surefoot.config.robot import load_robot
 from surefoot.config.unit import FootZero, Measured, Torque, Unit
+from surefoot.hw.aliengo.remote import Button, Remote, StopChords
 from surefoot.hw.calibrated_robot import CalibratedRobot
 from surefoot.hw.mujoco.backend import MujocoRobot
 from surefoot.hw.mujoco.plant import draw_plant
@@ -32,6 +33,7 @@ OFFSET = np.linspace(-0.8, 0.7, 12)
 MADE = Measured("2026-01-31T12:00+00:00", "standing", 4.0)
 DATE = MADE.date
 SHORT = Calibration(seconds=4.0)
+HANDS_CLOSED = Button.L1 | Button.L2 | Button.R1 | Button.R2
 
 
 def hung(calibration=SHORT, **settings):
@@ -163,6 +165,30 @@ def test_a_joint_that_is_held_back_ends_the_motion_and_the_robot_damps(monkeypat
     ):
         calibrate_hung(hung(replace(SHORT, seconds=1.0)), NOBODY, 1, DATE, lambda question: True)
     assert not robots[0]._law.kp.any() and (robots[0]._law.kd == Hw().damping_kd).all()
+
+
+@pytest.mark.parametrize(
+    ("buttons", "words", "kd"),
+    [(Button.L2 | Button.B, "damped", Hw().damping_kd), (HANDS_CLOSED, "no torque", 0.0)],
+)
+def test_the_remote_ends_it_in_the_cycle_in_which_it_is_read(monkeypatch, buttons, words, kd):
+    laws, remote = [], StopChords(Aliengo().chords)
+
+    class WithRemote(MujocoRobot):
+        def read(self):
+            held = Remote(buttons if self.t > 0.5 else Button(0))
+            return replace(super().read(), stop=remote.held(held))
+
+        def write(self, law, steps_later=0):
+            laws.append(law)
+            super().write(law, steps_later)
+
+    monkeypatch.setitem(io_module.BACKENDS, "mujoco", WithRemote)
+    robot = HungRobot(hung())
+    with pytest.raises(CannotCalibrate, match=f"stopped at the remote: {words}"):
+        robot.take_posture(np.tile(ROBOT.nominal.stand_q, 4))
+    assert laws[-2].kp.any()  # it was on its way
+    assert not laws[-1].kp.any() and not laws[-1].tau.any() and (laws[-1].kd == kd).all()
 
 
 def measured(states, deployment, unit=NOBODY, level_floor=True):
