@@ -29,7 +29,6 @@ class Health:
         note: in words what is to be known of the process's start; mostly empty.
         overruns: deadlines missed.
         t: run's time of the last status [s].
-        boot: of the process's messages.
     """
 
     def __init__(
@@ -44,8 +43,8 @@ class Health:
         self.life, self.reason, self.lost, self.note = Life.INIT, "", "", ""
         self.overruns = self.steps = 0
         self.t = 0.0
-        self._component, self._session, self._buffers, self.boot = component, session, buffers, boot
-        self._journal = journal
+        self._component, self._session, self._buffers = component, session, buffers
+        self._journal, self._boot = journal, boot
         self._nominal_hz = nominal_hz(process)
         self._settings = settings_digest(component.deployment)
         self._recent: deque[float] = deque(maxlen=2000)
@@ -72,7 +71,7 @@ class Health:
             t=t,
             valid=True,
             seq=self._seq,
-            boot=self.boot,
+            boot=self._boot,
             process=self._component.name,
             life=self.life.value,
             reason=self._words(t),

@@ -153,7 +153,7 @@ class Stepper:
         latest = {key: self._inbox.latest(key) for key in self.component.inputs}
         return Place(
             t=self._t,
-            boot=self.health.boot,
+            boot=self.outbox.boot,
             sent=self.outbox.sent,
             had=self.buffers.had,
             latest={key: encode(message) for key, message in latest.items() if message is not None},
@@ -189,8 +189,8 @@ class Stepper:
         if place.snapshot and age <= limit:
             self.component.restore(clock.unpack_snapshot(place.snapshot))
             self.outbox.continue_from(place.sent, place.boot)
-            self.health.boot, self._active = place.boot, True
-            self._restored, self._t = True, place.t
+            self._active = self._restored = True
+            self._t = place.t
             return 0.0
         if place.snapshot:
             self.health.note = f"began anew: its memory was {age:.3f} s old, limit {limit:g} s"

@@ -18,7 +18,7 @@ class Post:
     """What the supervisor alone knows of one process of its run.
 
     Attributes:
-        restarts: how often it has been started again; also the `boot` of its messages.
+        restarts: how often it has been started again; also the `boot` of its status.
         lent_to: id of the process that stands in for it; 0 the supervisor runs it itself.
         out: in words why none runs; empty while one does.
         silent_s: since it was last heard; -1 it has not been.

@@ -63,8 +63,11 @@ class Bus:
     def close(self):
         self.open = False
 
+    def statuses(self):
+        return [decode(ProcessStatus, payload) for key, payload in self.sent if key.startswith("status/")]
+
     def lives(self):
-        return [decode(ProcessStatus, payload).life for key, payload in self.sent if key.startswith("status/")]
+        return [status.life for status in self.statuses()]
 
 
 class Told:
@@ -117,10 +120,10 @@ def process(monkeypatch):
     monkeypatch.setattr(runner, "ProcessEnd", Told)
     monkeypatch.setattr("surefoot.components.health._PERIOD_S", 0.0)
 
-    def make(kind, relieves=False, which="monotonic", network=None, **bus):
+    def make(kind, relieves=False, which="monotonic", network=None, boot=0, **bus):
         monkeypatch.setattr(runner, "component_class", lambda name: kind)
         deployment = Deployment(run=Run(clock=which), network=network or Network())
-        made = runner.Runner(deployment, kind.name, relieves=relieves)
+        made = runner.Runner(deployment, kind.name, boot, relieves=relieves)
         vars(made._session).update(bus)
         return made
 
@@ -184,7 +187,14 @@ def place(state, t=None):
 def test_a_successor_goes_on_from_the_place_it_is_given(process):
     fsm = process(Ramp, relieves=True, place=place({"steps": 40}, 1e9))
     fsm.run()
-    assert fsm._stepper.component.steps == 43 and fsm._stepper.health.boot == 7
+    assert fsm._stepper.component.steps == 43 and fsm._stepper.outbox.boot == 7
+
+
+def test_a_successor_tells_its_own_restarts_also_where_its_messages_go_on_as_its_predecessors(process):
+    fsm = process(Ramp, relieves=True, boot=8, place=place({"steps": 40}, 1e9), asks=[b"show"])
+    fsm.run()
+    assert {status.boot for status in fsm._session.statuses()} == {8}
+    assert fsm._stepper.outbox.boot == 7 and {each.boot for each in answers(fsm._session)} == {7}
 
 
 def test_a_successor_that_cannot_take_over_asks_for_no_place(process):

@@ -2,11 +2,14 @@
 
 import os
 import signal
+from contextlib import closing
 
 import pytest
 
 from surefoot.bus.codec import decode
+from surefoot.bus.session import Session
 from surefoot.bus.topics import TOPICS
+from surefoot.tools.stack_watch import StackWatch
 
 
 def test_every_process_but_io_is_restarted_while_the_robot_stands(supervised):
@@ -58,25 +61,30 @@ def test_no_process_is_left_behind(supervised, how):
 
 
 def test_in_real_time_a_successor_takes_over_without_a_trace(supervised):
-    """Only the process id tells the two apart; one that comes too late on a busy machine tries again."""
+    """Only their statuses tell the two apart; one that comes too late on a busy machine tries again."""
     live = supervised("run.clock=monotonic", "mpc.profile=light", 'run.command=""')
     live.pids()
     live.wait(lambda: "fsm" in live.status and live.status["fsm"].life == "RUN")
     for name, key in (("fsm", "fsm/reference"), ("wbc", "joint/command")):
         live.wait(lambda name=name: live.status[name].life == "RUN")
         for _ in range(6):
-            before = live.status[name]
+            pid, boot = live.status[name].pid, live.last(key).boot
             live.command("restart", name)
-            live.wait(lambda name=name, pid=before.pid: live.status[name].pid != pid)
-            if live.status[name].boot == before.boot:
+            live.wait(lambda name=name, pid=pid: live.status[name].pid != pid)
+            if live.last(key).boot == boot:
                 break
-        assert live.status[name].boot == before.boot, live.said()
+        assert live.last(key).boot == boot, live.said()
         live.go_on(0.2)
         with live.lock:
             messages = [decode(TOPICS[key].message, payload) for payload in live.heard[key]]
         numbers = [(message.boot, message.seq) for message in messages]
         assert numbers == sorted(set(numbers))
         assert f"{name} restarted on request" in live.log("supervisor")
+    with closing(StackWatch(lambda: Session(live.namespace))) as watch:
+        watch.listen(3.0)
+        for name in ("fsm", "wbc"):  # it is seen again, as a process that was restarted
+            seen = watch.picture.processes[name]
+            assert seen.restarts > 0 and seen.status.pid == live.status[name].pid
     assert not any(live.status[name].bad_messages for name in ("estimator", "wbc", "mpc", "io"))
 
 
