@@ -65,7 +65,7 @@ class MujocoRobot:
 
     @property
     def trouble(self) -> str:
-        """Nothing ever is."""
+        """Empty: there is no link, and every law fits."""
         return ""
 
     def read(self) -> Sensors:
