@@ -14,6 +14,7 @@ from surefoot.config.deployment import Deployment
 from surefoot.hw.aliengo.aliengo_state import AliengoState
 from surefoot.hw.aliengo.command_packet import encode_command
 from surefoot.hw.aliengo.deadlines import Deadlines
+from surefoot.hw.aliengo.exchange import LAST_COMMANDS
 from surefoot.hw.aliengo.generation import BY_LENGTH, GENERATIONS
 from surefoot.hw.aliengo.law_encoder import LawEncoder
 from surefoot.hw.aliengo.link import Link
@@ -24,7 +25,6 @@ from surefoot.hw.aliengo.tick_clock import TickClock
 from surefoot.hw.robot_interface import damping_law
 
 _PERIOD_S = 1.0 / CYCLE_HZ
-_LAST_COMMANDS = 25  # that damp, at the end: the robot may hold the last it got
 
 
 @dataclass
@@ -81,7 +81,7 @@ def _talk_in(deployment: Deployment, wire: Aliengo) -> Heard:
     with _Ear(wire, plausibility) as ear:
         ear.exchange(damp, deployment.doctor.watch_s)
         ear.heard.statistics = ear.recorder.statistics()
-        ear.exchange(damp, _LAST_COMMANDS * _PERIOD_S)
+        ear.exchange(damp, LAST_COMMANDS * _PERIOD_S)
     return ear.heard
 
 
