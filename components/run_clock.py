@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from math import isfinite
 from threading import Event, Thread
 
 import msgpack
 
-from surefoot.bus.errors import BusError
+from surefoot.bus.errors import BusError, MessageError
 from surefoot.bus.service_keys import NOW
 from surefoot.bus.session import Session
 from surefoot.config.deployment import Deployment
@@ -35,9 +36,15 @@ class HubClock:
         behind_s: how far it may be behind, at the last answer used.
     """
 
-    def __init__(self, session: Session, ended: Callable[[], bool] = lambda: False):
-        """Ask until there is an answer, or `ended()`."""
-        self._session = session
+    def __init__(self, session: Session, ended: Callable[[], bool], drop: Callable[[str], None]):
+        """Ask until there is an answer, or `ended()`; then again every few seconds.
+
+        Args:
+            session: the bus.
+            ended: whether the process is to end.
+            drop: told of an answer that cannot be read, and of a question that failed; it is asked again.
+        """
+        self._session, self._ended, self._drop = session, ended, drop
         self._run: float | None = None
         self._offset = self._measured = self._last = 0.0
         self.behind_s = float("inf")
@@ -68,22 +75,25 @@ class HubClock:
             ended = time.monotonic()
             if not answers:
                 break
-            heard = True
-            run, t = msgpack.unpackb(answers[0])
+            try:
+                run, t = _unpack(answers[0])
+            except MessageError as error:
+                self._drop(str(error))
+                break
             if self._run not in (None, run):
                 self._another.set()
-            self._run = run
+            self._run, heard = run, True
             behind = ended - begun
             if behind < self.behind_s + _DRIFT * (begun - self._measured):
                 self._offset, self._measured, self.behind_s = t - ended, ended, behind
         return heard
 
     def _follow(self) -> None:
-        while not self._another.wait(_PERIOD_S):
+        while not (self._another.wait(_PERIOD_S) or self._ended()):
             try:
                 self.ask()
-            except Exception:  # the session is closed: the process ends
-                return
+            except Exception as error:  # without this thread the time would drift, and nobody would know
+                self._drop(f"{NOW}: {error}")
 
 
 def serve_time(session: Session, deployment: Deployment) -> None:
@@ -92,9 +102,26 @@ def serve_time(session: Session, deployment: Deployment) -> None:
     session.serve(NOW, lambda: [msgpack.packb([epoch, time.monotonic() - epoch])])
 
 
-def run_clock(session: Session, deployment: Deployment, ended: Callable[[], bool]) -> Callable[[], float]:
-    """The run's time [s] on the monotonic clock, in this process."""
+def run_clock(
+    session: Session, deployment: Deployment, ended: Callable[[], bool], drop: Callable[[str], None]
+) -> Callable[[], float]:
+    """The run's time [s] on the monotonic clock, in this process; `ended` and `drop` as of `HubClock`."""
     if deployment.run.clock == "monotonic" and not deployment.network.at_hub:
-        return HubClock(session, ended)
+        return HubClock(session, ended, drop)
     epoch = deployment.run.epoch_s
     return lambda: time.monotonic() - epoch
+
+
+def _unpack(payload: bytes) -> tuple[float, float]:
+    """When the run began on io's clock, which tells runs apart, and its time [s].
+
+    Raises:
+        MessageError: it is none.
+    """
+    try:
+        run, t = map(float, msgpack.unpackb(payload))
+    except Exception as error:
+        raise MessageError(f"{NOW}: no time of a run ({type(error).__name__}: {error})") from None
+    if not (isfinite(run) and isfinite(t)):
+        raise MessageError(f"{NOW}: no time of a run ({run}, {t})")
+    return run, t

@@ -52,7 +52,7 @@ class Runner:
         component = component_class(name)(deployment)
         self._stepper = Stepper(component, self._session, self._process, boot, simulated=not self._monotonic)
         self._relief, self._relieves, self._relieved = Relief(self._session, name), relieves, False
-        self._clock = run_clock(self._session, deployment, lambda: self._end.due)
+        self._clock = run_clock(self._session, deployment, lambda: self._end.due, self._stepper.buffers.drop)
 
     def run(self) -> int:
         """Until the end; returns the exit code.

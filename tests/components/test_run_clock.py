@@ -3,9 +3,14 @@
 import os
 import time
 from dataclasses import replace
+from itertools import chain, repeat
+from math import nan
+from threading import Event
 
+import msgpack
 import pytest
 
+from surefoot.bus.errors import BusError
 from surefoot.bus.session import Session
 from surefoot.components import run_clock
 from surefoot.components.run_clock import AnotherRun, HubClock, serve_time
@@ -17,6 +22,14 @@ NAMESPACE = f"clock-{os.getpid()}"
 def deployment(age_s):
     """A run that began so long ago."""
     return replace(Deployment(), run=Run(clock="monotonic", epoch_s=time.monotonic() - age_s))
+
+
+@pytest.fixture
+def clock_of():
+    """Makes clocks of a process that goes on until the test is over, and is told nothing wrong."""
+    over = Event()
+    yield lambda client: HubClock(client, over.is_set, pytest.fail)
+    over.set()
 
 
 @pytest.fixture
@@ -33,10 +46,10 @@ def client(hub):
     session.close()
 
 
-def test_it_is_behind_by_no_more_than_an_answer_took_and_never_ahead(hub, client):
+def test_it_is_behind_by_no_more_than_an_answer_took_and_never_ahead(hub, client, clock_of):
     run = deployment(100.0)
     serve_time(hub, run)
-    clock = HubClock(client)
+    clock = clock_of(client)
     for _ in range(100):
         before = time.monotonic() - run.run.epoch_s
         t = clock()
@@ -45,9 +58,9 @@ def test_it_is_behind_by_no_more_than_an_answer_took_and_never_ahead(hub, client
         clock.ask()
 
 
-def test_it_goes_on_without_answers_and_never_back(hub, client, monkeypatch):
+def test_it_goes_on_without_answers_and_never_back(hub, client, monkeypatch, clock_of):
     serve_time(hub, deployment(5.0))
-    clock = HubClock(client)
+    clock = clock_of(client)
     monkeypatch.setattr(client, "ask", lambda key, timeout_s: [])
     first = clock()
     assert not clock.ask()
@@ -58,9 +71,9 @@ def test_it_goes_on_without_answers_and_never_back(hub, client, monkeypatch):
     assert clock() == later
 
 
-def test_another_run_is_not_followed(hub, client):
+def test_another_run_is_not_followed(hub, client, clock_of):
     serve_time(hub, deployment(5.0))
-    clock = HubClock(client)
+    clock = clock_of(client)
     clock()
     clock._run += 1.0  # as if it had been begun with another hub
     clock.ask()
@@ -71,5 +84,28 @@ def test_another_run_is_not_followed(hub, client):
 def test_it_waits_for_the_first_answer_until_told_to_end(hub, client, monkeypatch):
     monkeypatch.setattr(run_clock, "_ASK_AGAIN_S", 0.01)
     looks = iter([False, False, True])
-    HubClock(client, lambda: next(looks))
+    HubClock(client, lambda: next(looks, True), pytest.fail)
     assert next(looks, "none left") == "none left"
+
+
+@pytest.mark.parametrize(
+    "said", [b"\xc1", msgpack.packb([1.0]), msgpack.packb([1.0, "a"]), msgpack.packb([1.0, nan])]
+)
+def test_an_answer_that_is_none_is_told_and_it_is_asked_again(hub, client, monkeypatch, said):
+    """On and on, whatever goes wrong: without an answer nobody would know that the run is another."""
+    monkeypatch.setattr(run_clock, "_PERIOD_S", 0.01)
+    serve_time(hub, deployment(5.0))
+    dropped = []
+    clock = HubClock(client, lambda: False, dropped.append)
+    run = clock._run
+    answers = chain([[said], BusError("the link broke")], repeat([msgpack.packb([run + 1.0, 0.0])]))
+
+    def play(key, timeout_s):
+        answer = next(answers)
+        if isinstance(answer, BusError):
+            raise answer
+        return answer
+
+    monkeypatch.setattr(client, "ask", play)
+    assert clock._another.wait(60.0)
+    assert "clock/now: no time of a run" in dropped[0] and dropped[1:] == ["clock/now: the link broke"]
