@@ -7,6 +7,7 @@ import argparse
 from surefoot.components.fsm.words import COMMANDS, MEANINGS, NoCommand, read_command
 from surefoot.tools.commands.bus_call import add_bus_arguments, open_bus
 from surefoot.tools.commands.call import CallError
+from surefoot.tools.commands.say import say_command
 
 _EPILOG = """\
 exit code: 0 the robot obeys, now or when the step is over; 1 refused, or not answered; 2 the call was wrong
@@ -41,10 +42,6 @@ def _run(call: argparse.Namespace) -> int:
         raise CallError(str(error)) from None
     session = open_bus(call)
     try:
-        remote = Remote(session, beats=False)
-        print(f"told {session.where}: {words}", flush=True)
-        answer = remote.say(words)
-        print(answer.words if answer.taken else f"refused: {answer.words}")
+        return say_command(Remote(session, beats=False), session.where, words)
     finally:
         session.close()
-    return 0 if answer.taken else 1

@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 
 from surefoot.tools.commands.bus_call import add_bus_arguments
-from surefoot.tools.commands.say import say_on_bus
+from surefoot.tools.commands.say import say_at_once
 
 _CUT = """\
 Take the torque from every joint of the robot of a running stack in the next cycle: it falls where it is. io
 itself obeys; no other process has to run. Nothing moves before `surefoot command damp`, which brakes the joints
 again, and then `stand`.
 
-exit code: 0 it was said; 2 the call was wrong, or no stack runs there
+It is said at once; then the state machine's answer is waited for, without which io obeys all the same.
+
+exit code: 0 the robot obeys; 1 refused, or not answered; 2 the call was wrong, or no stack runs there
 """
 
 
@@ -30,7 +32,4 @@ def add(commands: argparse._SubParsersAction) -> None:
 
 
 def _run(call: argparse.Namespace) -> int:
-    from surefoot.bus.service_keys import REQUEST
-
-    say_on_bus(call, REQUEST, "cut")
-    return 0
+    return say_at_once(call, "cut")

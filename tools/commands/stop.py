@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from surefoot.tools.commands.bus_call import add_bus_arguments
-from surefoot.tools.commands.say import say_on_bus
+from surefoot.tools.commands.say import say_at_once
 
 _STOP = """\
 Let the robot of a running stack settle, from whatever it does: a leg in the air is put down, the robot sits down
@@ -13,7 +13,9 @@ and is damped. The run stays up, and nothing moves before `surefoot command stan
 driven after operator.settle_s, io damps it. `surefoot command stop` is something else: it ends a walk, and the
 robot stands. `surefoot cut` takes the torque away at once. Ctrl-C in the terminal of `surefoot run` ends the run.
 
-exit code: 0 it was said; 2 the call was wrong, or no stack runs there
+It is said at once; then the answer is waited for.
+
+exit code: 0 the robot obeys; 1 refused, or not answered; 2 the call was wrong, or no stack runs there
 """
 
 
@@ -31,7 +33,4 @@ def add(commands: argparse._SubParsersAction) -> None:
 
 
 def _run(call: argparse.Namespace) -> int:
-    from surefoot.bus.service_keys import REQUEST
-
-    say_on_bus(call, REQUEST, "sit")
-    return 0
+    return say_at_once(call, "sit")

@@ -39,7 +39,7 @@ class Remote:
         heartbeat_s: what the run asks for, where this is the heartbeat; else 0 [s].
     """
 
-    def __init__(self, session: Session, patience_s: float = PATIENCE_S, beats: bool = True):
+    def __init__(self, session: Session, patience_s: float = PATIENCE_S, beats: bool = True, settles: bool = True):
         """Listen to answers, and begin to beat where the run asks for a heartbeat.
 
         Args:
@@ -47,6 +47,8 @@ class Remote:
             patience_s: how long an answer is waited for [s].
             beats: be the operator's heartbeat; false where the operator has another one, or who holds this remote
                 beats himself.
+            settles: wait until io has heard of what is listened to; false where the first word cannot wait. It
+                follows the subscriptions on the same link.
 
         Raises:
             BusError: the stack does not say what is running.
@@ -65,7 +67,7 @@ class Remote:
         self._closed, self.heartbeat_s = Event(), 0.0
         if beats:
             self._begin_to_beat(build(Operator, ask_deployment(session).get("operator", {}), "operator"))
-        else:
+        elif settles:
             session.ask(DEPLOYMENT)  # whoever answers has heard of the subscriptions: no answer comes too early
 
     # Where to -------------------------------------------------------------------------------------------
@@ -134,7 +136,9 @@ class Remote:
             number, refusal = _next(self._commands), self._refused
         self._session.put(REQUEST, words.encode())
         return lambda: self._await(
-            lambda: self._refusal_of(words, refusal) or self._answer_to(words, number), words
+            lambda: self._refusal_of(words, refusal) or self._answer_to(words, number),
+            words,
+            lambda: self._number_of(words, number) is not None,
         )
 
     def tune(self, key: str, value: float | bool | str | Sequence[float]) -> Answer:
@@ -158,14 +162,17 @@ class Remote:
         """End the heartbeat: a robot that asks for one sits down."""
         self._closed.set()
 
-    def _await(self, answer: Callable[[], Answer | None], said: str) -> Answer:
+    def _await(
+        self, answer: Callable[[], Answer | None], said: str, passed_on: Callable[[], bool] = lambda: False
+    ) -> Answer:
         end = time.monotonic() + self._patience_s
         with self._arrived:
             while (found := answer()) is None:
                 if not self._arrived.wait(end - time.monotonic()):
+                    far = ", though io has passed it on" if passed_on() else ""
                     return refused(
-                        f"{said}: no answer in {self._patience_s:g} s: is fsm running, does simulated time go on? "
-                        "`surefoot status` tells"
+                        f"{said}: no answer in {self._patience_s:g} s{far}: is fsm running, does simulated time "
+                        "go on? `surefoot status` tells"
                     )
             return found
 
@@ -176,9 +183,13 @@ class Remote:
 
     def _answer_to(self, words: str, since: int) -> Answer | None:
         """What the state machine has answered to these words; None while it has not."""
-        own = next((each.seq for each in self._commands if each.seq >= since and each.command == words), None)
+        own = self._number_of(words, since)
         answer = next((each for each in self.heard if each.number == own), None)
         return None if answer is None else Answer(answer.taken, answer.words)
+
+    def _number_of(self, words: str, since: int) -> int | None:
+        """Under which io has passed these words on; None while it has not."""
+        return next((each.seq for each in self._commands if each.seq >= since and each.command == words), None)
 
     def _tuned(self, key: str, since: int) -> Answer | None:
         """That a setting was changed; None while it was not."""

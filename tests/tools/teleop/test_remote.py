@@ -5,6 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from driven import Driven
 
+from surefoot.bus.service_keys import REQUEST
+from surefoot.tools.cli import main
 from surefoot.tools.teleop.remote import Remote
 
 
@@ -102,6 +104,26 @@ def test_no_answer_keeps_another_command(driven, remote_of):
         answers = list(pool.map(remote.say, ("pause", "stop")))
     assert [answer.taken for answer in answers] == [False, False]
     assert all("no answer in 3 s: is fsm running" in answer.words for answer in answers)
+
+
+@pytest.mark.parametrize(("command", "word"), [("stop", "sit"), ("cut", "cut")])
+def test_stop_and_cut_tell_what_became_of_them(driven, capsys, command, word):
+    stack = driven()
+    assert main([command, "--namespace", stack.namespace]) == 0
+    assert stack.commands == [word]
+    stack.come_to("DAMP")
+    told, answer = capsys.readouterr().out.splitlines()
+    assert told.endswith(f": {word}") and "refused" not in answer
+
+
+@pytest.mark.parametrize(("command", "word"), [("stop", b"sit"), ("cut", b"cut")])
+def test_a_stop_that_nobody_takes_is_said_all_the_same_and_is_no_success(driven, capsys, command, word):
+    stack = driven()
+    stack._ended.set()  # nobody obeys any more
+    stack._thread.join()
+    assert main([command, "--namespace", stack.namespace]) == 1
+    assert "no answer in 3 s: is fsm running" in capsys.readouterr().out
+    assert list(stack._desk._requests) == [(REQUEST, word)]
 
 
 def test_two_remotes_get_each_their_own_answer(driven, remote_of):
