@@ -1,5 +1,6 @@
 """What runs on the bus is in the file: all of it, and all but the last second when the recorder is killed."""
 
+import os
 import resource
 import signal
 import subprocess
@@ -30,7 +31,8 @@ class Recorder:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_most, bytes_most))
 
         with output.open("wb") as log:
-            call = [*RECORD, str(self.path), "--namespace", live.namespace]
+            parent = str(os.getpid())  # as one beside its run it has patience with a busy machine
+            call = [*RECORD, str(self.path), "--namespace", live.namespace, "--parent", parent]
             self.process = subprocess.Popen(call, stdout=log, stderr=log, preexec_fn=limit)
         self.said = output.read_text
         live.wait(lambda: "recording" in self.said())

@@ -26,6 +26,11 @@ from surefoot.tools.commands import topics
         (["run", "flat", "--host", "laptop"], "network: host = 'laptop': hosts has robot"),
         (["command", "stand", "--connect", "flat"], "robot cannot be reached from another machine"),
         *(([word, "--connect", "flat"], "robot cannot be reached from") for word in ("stop", "cut", "heartbeat")),
+        (["record", "{tmp}/a.mcap", "--connect", "flat"], "robot cannot be reached from"),
+        (
+            ["record", "{tmp}/a.mcap", "--namespace", "nobody"],
+            "is `surefoot run` running with namespace 'nobody'?",
+        ),
         (["child", "flat", "engine"], "no process 'engine'"),
         (["eval", "flat", "--seeds", "x", "--out", "out"], "--seeds 'x'"),
         (["emulator", "--terrain", "moss"], "terrain.kind = 'moss': must be one of 'flat'"),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from surefoot.tools.commands.bus_call import add_bus_arguments, open_bus
+
 _HELP = """\
 Record everything that a running stack publishes, and which messages each of its steps read, until Ctrl-C or the
 end of the run. The processes keep their journals themselves and hand them over ten times a second, so that nothing
@@ -25,7 +27,7 @@ def add(commands: argparse._SubParsersAction) -> None:
         epilog="example: surefoot record out.mcap",
     )
     parser.add_argument("out", type=Path, help="an MCAP file; it is overwritten")
-    parser.add_argument("--namespace", default="surefoot")
+    add_bus_arguments(parser)
     parser.add_argument("--parent", type=int, default=0, help=argparse.SUPPRESS)
     parser.set_defaults(run=_run)
 
@@ -39,9 +41,9 @@ def _run(call: argparse.Namespace) -> int:
     if warning:
         print(warning, flush=True)
     end = ProcessEnd(call.parent)
-    session = connect(call.namespace, lambda: end.due)
+    session = connect(call.namespace, lambda: end.due) if call.parent else open_bus(call)
     recorder = Recorder(session, call.out)
-    print(f"recording namespace {call.namespace!r} to {call.out}; Ctrl-C ends it", flush=True)
+    print(f"recording namespace {session.namespace!r} to {call.out}; Ctrl-C ends it", flush=True)
     try:
         recorder.run(lambda: end.due)
     except RecordingError as error:

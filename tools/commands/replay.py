@@ -41,7 +41,9 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--from", dest="begin", type=float, default=float("-inf"), metavar="T", help="run's time [s]"
     )
-    parser.add_argument("--to", dest="end", type=float, default=float("inf"), metavar="T", help="run's time [s]")
+    parser.add_argument(
+        "--until", dest="end", type=float, default=float("inf"), metavar="T", help="run's time [s]"
+    )
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="another setting than the recorded one"
     )

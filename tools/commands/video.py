@@ -18,7 +18,7 @@ def add(commands: argparse._SubParsersAction) -> None:
         "recorded, otherwise the estimate. Arrows are the forces on the feet, orange on the leg whose turn it\n"
         "is; discs are the verdicts on footholds.\n\n"
         "exit code: 0 done; 2 the call was wrong, or the recording cannot be read",
-        epilog="example: surefoot video out.mcap --out run.mp4 --speed 4 --from 20 --to 60",
+        epilog="example: surefoot video out.mcap --out run.mp4 --speed 4 --from 20 --until 60",
     )
     parser.add_argument("recording", type=Path)
     parser.add_argument("--out", type=Path, required=True, help="the film, an .mp4")
@@ -28,7 +28,9 @@ def add(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--from", dest="begin", type=float, default=float("-inf"), metavar="T", help="run's time [s]"
     )
-    parser.add_argument("--to", dest="end", type=float, default=float("inf"), metavar="T", help="run's time [s]")
+    parser.add_argument(
+        "--until", dest="end", type=float, default=float("inf"), metavar="T", help="run's time [s]"
+    )
     parser.set_defaults(run=_run)
 
 

@@ -190,7 +190,7 @@ class Recorder:
 
 
 def connect(namespace: str, due: Callable[[], bool]) -> Session:
-    """The bus of a namespace, as soon as there is one.
+    """The bus of a namespace for the recorder beside its run: io may be too busy coming up to answer at once.
 
     Raises:
         BusError: there is none.

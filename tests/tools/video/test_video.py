@@ -60,7 +60,7 @@ def test_with_truth_the_truth_is_shown_and_the_terrain_as_it_moved(tmp_path):
 
 
 def test_a_film_has_its_frames_and_something_moves_in_it(tmp_path, capsys):
-    rate, frames = film(tmp_path / "a.mp4", "--from", "23.1", "--to", "23.9")
+    rate, frames = film(tmp_path / "a.mp4", "--from", "23.1", "--until", "23.9")
     assert rate == 10 and len(frames) == 9
     assert frames[0].shape == (128, 192, 3) and frames[0].std() > 20.0
     changed = np.abs(frames[0].astype(int) - frames[-1]).max(axis=2) > 30
@@ -69,7 +69,7 @@ def test_a_film_has_its_frames_and_something_moves_in_it(tmp_path, capsys):
 
 
 def test_a_faster_film_is_shorter(tmp_path):
-    _, frames = film(tmp_path / "a.mp4", "--from", "23.1", "--to", "23.9", "--speed", "4")
+    _, frames = film(tmp_path / "a.mp4", "--from", "23.1", "--until", "23.9", "--speed", "4")
     assert len(frames) == 3
 
 
@@ -77,7 +77,7 @@ def test_a_plank_that_was_down_is_seen_down(tmp_path):
     planks = len(MujocoRobot(load(CLIP).deployment).truth().terrain_q)
     level = with_truth(tmp_path / "level.mcap", terrain_q=np.zeros(planks), every=5)
     down = with_truth(tmp_path / "down.mcap", terrain_q=np.full(planks, 0.8), every=5)
-    span = ("--from", "23.3", "--to", "23.35")
+    span = ("--from", "23.3", "--until", "23.35")
     (first, *_), (second, *_) = (
         film(path.with_suffix(".mp4"), *span, recording=path)[1] for path in (level, down)
     )
@@ -87,7 +87,7 @@ def test_a_plank_that_was_down_is_seen_down(tmp_path):
 def test_a_scene_of_other_settings_is_told(tmp_path, capsys):
     recording = with_truth(tmp_path / "a.mcap", terrain_q=[0.1])
     out = tmp_path / "a.mp4"
-    assert main(["video", str(recording), "--out", str(out), *SMALL, "--from", "23.3", "--to", "23.35"]) == 2
+    assert main(["video", str(recording), "--out", str(out), *SMALL, "--from", "23.3", "--until", "23.35"]) == 2
     told = capsys.readouterr().err
     if NO_RENDERER not in told and "no renderer" in told:
         pytest.skip(told)
