@@ -54,6 +54,8 @@ def test_a_command_too_old_is_seen_where_the_cycle_was_not_damped():
     assert _applied_too_old(states[100:], commands, 0.05) == ""
     assert _applied_too_old([HardwareState(t=0.26)], commands, 0.05).startswith("at 0.260 s")
     assert "inf" in _applied_too_old([HardwareState(t=0.0)], [], 0.05)
+    unheard = [JointCommand(t=0.0, seq=3), JointCommand(t=0.2, seq=53)]
+    assert _applied_too_old([HardwareState(t=0.1)], unheard, 0.05) == ""
 
 
 def test_the_phases_are_those_of_the_references():
