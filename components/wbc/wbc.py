@@ -202,13 +202,13 @@ class Wbc(Component):
         settings = self._settings
         crept = (reference.p_WF - estimate.p_WF) * _bears(reference)[:, None]
         acceleration = settings.stance_kp * crept - settings.stance_kd * estimate.v_WF
-        joints = _Joints(estimate.q.copy(), self._still_feet(estimate, R), np.zeros(12))
+        q, dq, kp = estimate.q.copy(), self._still_feet(estimate, R), np.zeros(12)
         leg = reference.swing_leg
         if leg >= 0 and not stance[leg]:
             own = slice(3 * leg, 3 * leg + 3)
-            acceleration[leg], joints.q[own], joints.dq[own] = self._swing(t, estimate, reference, R)
-            joints.kp[own] = settings.joint_kp
-        return joints, acceleration
+            acceleration[leg], q[own], dq[own] = self._swing(t, estimate, reference, R)
+            kp[own] = settings.joint_kp
+        return _Joints(q, dq, kp), acceleration
 
     def _solve(self, task: Task) -> tuple[np.ndarray, np.ndarray, str]:
         """Torques (12,) [N m], forces (4, 3) [N], and in words what they are made of.
