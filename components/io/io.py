@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import isfinite
 from typing import ClassVar
 
 import numpy as np
@@ -56,7 +55,7 @@ class Io(Component):
         sensors = self.robot.read()
         measured_t = t - sensors.age_s if sensors.t is None else sensors.t - self.deployment.run.epoch_s
         law, damping, reason = self._judged(inbox, sensors, t, t - measured_t)
-        if _is_finite(sensors):  # nothing else may be published; the gate has said what is wrong
+        if self._gate.measured:  # else there is nothing that may be published; the gate has said what is wrong
             outbox.publish(
                 "hw/state",
                 HardwareState(
@@ -123,9 +122,3 @@ class Io(Component):
             self.robot.write(law)
             self.robot.advance()
             self._cycles += 1
-
-
-def _is_finite(sensors: Sensors) -> bool:
-    """One sum tells: it is finite only if every figure is."""
-    total = sensors.q.sum() + sensors.dq.sum() + sensors.tau.sum() + sensors.omega_WB_B.sum() + sensors.acc_B.sum()
-    return isfinite(total)

@@ -37,6 +37,7 @@ class Gate:
 
     Attributes:
         damping: whether the last cycle damped, or was cut.
+        measured: whether the figures of the last reading can be measurements: finite, and none of a million.
         reason: why it damped, held, limited or warned, with value and limit; empty when nothing was amiss.
     """
 
@@ -57,7 +58,7 @@ class Gate:
         self._passed_t: float | None = None
         self._held_t: float | None = None
         self._latched: Violation | None = None
-        self.damping = True
+        self.damping = self.measured = True
         self.reason = "no command yet"
 
     @property
@@ -123,6 +124,7 @@ class Gate:
         is_old = abs(t - age_s - self._measured_t) < _ROUNDING_S
         self._measured_t = t - age_s
         unusable = self._sensors.unusable(sensors, age_s)
+        self.measured = unusable is None or unusable.check is not Check.NO_MEASUREMENT
         unfit = self._commands.violation(command, t)
         found = [unusable, unfit]
         if unusable is None:
