@@ -41,6 +41,7 @@ class Process:
         every: releases on every n-th message of the trigger.
         budget_s: logical execution time.
         urgency: on the monotonic clock the more urgent interrupts the less; 0: as any program, it may be late.
+        core: which of a machine's cores it keeps to when it is urgent; the last where there are fewer.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Process:
     every: int = 1
     budget_s: float = 0.0
     urgency: int = 0
+    core: int = 0
 
 
 CYCLE_HZ = 500.0
@@ -75,9 +77,9 @@ def processes(mpc_profile: str = "paper") -> dict[str, Process]:
     table = (
         Process("io", rate_hz=CYCLE_HZ, urgency=5),
         Process("estimator", trigger="hw/state", budget_s=0.001, urgency=4),
-        Process("wbc", trigger="state/estimate", every=_WBC_EVERY, budget_s=0.001, urgency=3),
-        Process("mpc", rate_hz=mpc_hz, budget_s=1.0 / mpc_hz, urgency=1),
-        Process("fsm", rate_hz=_FSM_HZ, budget_s=0.002, urgency=2),
+        Process("wbc", trigger="state/estimate", every=_WBC_EVERY, budget_s=0.001, urgency=3, core=1),
+        Process("mpc", rate_hz=mpc_hz, budget_s=1.0 / mpc_hz, urgency=1, core=2),
+        Process("fsm", rate_hz=_FSM_HZ, budget_s=0.002, urgency=2, core=1),
         Process("trajopt", trigger="trajopt/request", budget_s=0.100),
         Process("elevation_map", rate_hz=_MAP_HZ, budget_s=0.020),
     )

@@ -89,7 +89,7 @@ class Runner:
         """Come before ordinary programs where the machine permits it; where it does not, the run has said so."""
         base, urgency = self._deployment.run.realtime_priority, self._process.urgency
         if base and urgency:
-            claim(base + urgency)
+            claim(base + urgency, self._process.core)
 
     def _follow(self) -> None:
         """Step until the end, then let go of the robot, also after a failure.

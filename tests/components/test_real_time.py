@@ -24,7 +24,16 @@ def said(program, **how):
 def test_threads_made_before_and_after_have_the_priority():
     wait = "threading.Thread(target=time.sleep, args=(5,), daemon=True).start()\n"
     tell = "print({os.sched_getscheduler(int(t)) for t in os.listdir('/proc/self/task')} == {os.SCHED_FIFO}, "
-    assert said(f"{wait}real_time.claim(40)\n{wait}{tell}len(os.listdir('/proc/self/task')))") == "True 3"
+    assert said(f"{wait}real_time.claim(40, 0)\n{wait}{tell}len(os.listdir('/proc/self/task')))") == "True 3"
+
+
+@needs_permission
+@pytest.mark.parametrize("core", [0, 1, 255])
+def test_threads_made_before_and_after_keep_to_one_core(core):
+    wait = "threading.Thread(target=time.sleep, args=(5,), daemon=True).start()\n"
+    tell = "print({core for t in os.listdir('/proc/self/task') for core in os.sched_getaffinity(int(t))})"
+    cores = sorted(os.sched_getaffinity(0))
+    assert said(f"{wait}real_time.claim(40, {core})\n{wait}{tell}") == f"{{{cores[min(core, len(cores) - 1)]}}}"
 
 
 @needs_permission
@@ -36,7 +45,7 @@ def test_to_ask_whether_it_is_permitted_changes_nothing():
 
 @needs_root
 def test_who_may_not_reads_what_would_permit_it():
-    words = said("os.setuid(65534)\nprint(real_time.claim(40), real_time.refusal(40))")
+    words = said("os.setuid(65534)\nprint(real_time.claim(40, 0), real_time.refusal(40))")
     assert words.startswith("False no real-time priority 40 (run.realtime_priority)")
     assert "rtprio 80" in words
 
@@ -45,3 +54,8 @@ def test_the_nearer_to_the_motors_the_more_urgent():
     urgency = {name: process.urgency for name, process in processes().items()}
     assert urgency["io"] > urgency["estimator"] > urgency["wbc"] > urgency["fsm"] > urgency["mpc"] > 0
     assert urgency["trajopt"] == urgency["elevation_map"] == 0
+
+
+def test_what_feeds_one_another_in_every_cycle_shares_a_core():
+    core = {name: process.core for name, process in processes().items() if process.urgency}
+    assert core == {"io": 0, "estimator": 0, "wbc": 1, "fsm": 1, "mpc": 2}
