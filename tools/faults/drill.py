@@ -177,8 +177,9 @@ class Drill:
             return Result(case, not left and bool(told), outcome, told, seconds)
         if seconds is None:
             return Result(case, height > _STANDS_M, f"stays up, trunk at {height:.2f} m", told)
-        state = run.last("fsm/reference").state
-        outcome = f"damped; {PAUSE_S:g} s after: trunk at {height:.2f} m, {state}"
+        reference = run.last("fsm/reference")
+        told = told or reference.reason
+        outcome = f"damped; {PAUSE_S:g} s after: trunk at {height:.2f} m, {reference.state}"
         return Result(case, bool(told), outcome, told, seconds)
 
     def _run(self, *settings: str) -> ObservedRun:

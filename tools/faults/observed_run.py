@@ -111,9 +111,17 @@ class ObservedRun:
         self._put(SUPERVISOR_REQUEST, f"restart {process}")
 
     def signal(self, process: str, number: int) -> None:
-        """Send a signal to a process, or to "all" of them."""
+        """Send a signal to a process, or to "all" of them.
+
+        Raises:
+            RunOver: it has ended by itself.
+        """
         for name in PROCESSES if process == "all" else (process,):
-            os.kill(self.status[name].pid, number)
+            try:
+                os.kill(self.status[name].pid, number)
+            except ProcessLookupError:
+                self.wait_end()
+                raise RunOver(self.ending()) from None
 
     def wait(self, holds: Callable[[], bool], what: str = "") -> None:
         """Until `holds()`.
