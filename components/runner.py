@@ -27,6 +27,8 @@ _LOOK_S = 0.2
 _LET_GO_S = 1.0  # shorter than the supervisor's patience
 _LEAVE_S = 0.1
 _GREET_S = 1.0  # without a release
+_HELD_UP_S = 0.03  # a process so late was stopped or starved, and with it the threads that bring its inputs:
+_CATCH_UP_S = 0.02  # without this it would take an input for stale that waits to be read
 
 
 class Runner:
@@ -206,13 +208,13 @@ class Runner:
         deadline = time.monotonic()
         while self._goes_on:
             deadline += period
-            wait = deadline - time.monotonic()
-            if wait > 0.0:
-                time.sleep(wait)
-            else:
-                missed = int(-wait / period)
-                self._stepper.health.overruns += missed
-                deadline += missed * period
+            time.sleep(max(deadline - time.monotonic(), 0.0))
+            late = time.monotonic() - deadline
+            missed = int(late / period)
+            self._stepper.health.overruns += missed
+            deadline += missed * period
+            if late > _HELD_UP_S:
+                time.sleep(_CATCH_UP_S)
             self._live_step()
 
     def _follow_trigger(self) -> None:

@@ -84,15 +84,23 @@ def clock_stands(picture: Picture, now: float | None = None) -> str:
 
 def worst_input(status: ProcessStatus) -> tuple[str, float, float] | None:
     """The input that is oldest for what its topic allows: its key, its age and that limit [s]."""
-    ages = [
-        (age / TOPICS[key].stale_after_s, key, age)
-        for key, age in zip(status.input, status.input_age_s, strict=False)
-        if key in TOPICS and TOPICS[key].stale_after_s and age >= 0.0
-    ]
+    ages = [(age / limit, key, age) for key, age, limit in _ages(status) if age >= 0.0]
     if not ages:
         return None
     _, key, age = max(ages)
-    return key, float(age), TOPICS[key].stale_after_s
+    return key, age, TOPICS[key].stale_after_s
+
+
+def _ages(status: ProcessStatus) -> list[tuple[str, float, float]]:
+    """The inputs that have a limit of age: key, age and limit [s].
+
+    A process that steps on events reads its inputs then: they have no age in between.
+    """
+    return [
+        (key, float(age), TOPICS[key].stale_after_s)
+        for key, age in zip(status.input, status.input_age_s, strict=False)
+        if status.nominal_hz and key in TOPICS and TOPICS[key].stale_after_s
+    ]
 
 
 def _of_processes(picture: Picture, now: float) -> str:
@@ -208,9 +216,9 @@ def _root(picture: Picture, name: str, reason: str) -> tuple[str, str]:
 def _stale(status: ProcessStatus) -> list[str]:
     """Inputs that are older than they may be, in words."""
     return [
-        f"{key} of {TOPICS[key].writer}, {1e3 * age:.0f} ms, limit {1e3 * TOPICS[key].stale_after_s:.0f} ms"
-        for key, age in zip(status.input, status.input_age_s, strict=False)
-        if key in TOPICS and age > TOPICS[key].stale_after_s > 0.0
+        f"{key} of {TOPICS[key].writer}, {1e3 * age:.0f} ms, limit {1e3 * limit:.0f} ms"
+        for key, age, limit in _ages(status)
+        if age > limit
     ]
 
 

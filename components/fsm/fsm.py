@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from surefoot.bus.messages import FsmEvent, MotionReference, OperatorAnswer, OperatorCommand
+from surefoot.bus.topics import TOPICS
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.fsm.observation import Observation, Observer
 from surefoot.components.fsm.posture import Posture, farthest_joint, posture_reference
@@ -30,12 +31,16 @@ from surefoot.config.deployment import Deployment
 _CUT = "cut by command"
 """Why the robot is damped; nothing gets it up before a person has said damp."""
 
+_HELD_UP_S = TOPICS["fsm/reference"].stale_after_s
+"""After so long without a step the motion is no longer this one's: the controllers hold the base by themselves."""
+
 
 class Fsm(Component):
     """Turns operator commands and estimates into the motion reference, at 250 Hz.
 
     Without a fresh estimate, or fallen over, it asks for damping. A command that cannot be obeyed now is
     answered by an event that says why; one that needs the robot to stand first is obeyed after standing up.
+    Held up itself, as a stopped process is, it ends the walk: nobody has watched the foot meanwhile.
     """
 
     name: ClassVar[str] = "fsm"
@@ -90,7 +95,7 @@ class Fsm(Component):
 
     def step(self, t: float, inbox: Inbox, outbox: Outbox) -> None:
         self.heed_tuning(inbox)
-        self._t = t
+        held_up_s, self._t = t - self._t, t
         lost = self._lost(t, inbox)
         now = None if lost else self._observer.observe(t, inbox.latest("state/estimate"))
         if lost and self._posture is not Posture.DAMP:
@@ -98,6 +103,8 @@ class Fsm(Component):
         for message in inbox.new("operator/command"):
             outbox.publish("operator/answer", self._answer(message, now))
         if now is not None:
+            if held_up_s > _HELD_UP_S and self._posture is None:
+                end(self._cycle, now, f"the state machine was held up for {held_up_s:.1f} s")
             self._advance(now, inbox)
         outbox.publish("fsm/reference", self._reference(t))
         self._send(outbox)

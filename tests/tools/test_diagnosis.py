@@ -276,3 +276,11 @@ def test_the_worst_input_is_the_one_nearest_to_its_limit():
     said = status("wbc", input_age_s=ages("wbc", mpc_policy=0.05, state_estimate=0.03))
     assert worst_input(said) == ("state/estimate", 0.03, 0.04)
     assert worst_input(status("wbc", input_age_s=np.full(len(component_class("wbc").inputs), -1.0))) is None
+
+
+def test_inputs_of_a_process_that_steps_on_events_have_no_age_in_between():
+    picture = walking()
+    say(picture, "trajopt", input_age_s=ages("trajopt", state_estimate=3.0))
+    assert troubles(picture, NOW) == {}
+    assert why_nothing_moves(picture, NOW) == ""
+    assert worst_input(picture.processes["trajopt"].status) is None

@@ -323,3 +323,35 @@ def test_a_robot_that_was_told_to_sit_is_not_kept_from_it(word):
     assert not robot.tell(word).taken
     robot.come_to("DAMP")
     assert "sitting" in robot.reference.reason
+
+
+# Held up ----------------------------------------------------------------------------------------------------
+
+
+def held_up(robot, seconds):
+    """Stopped itself for a while, as by SIGSTOP: the robot has been held by its controllers."""
+    robot.t += seconds
+    robot.tick()
+
+
+@pytest.mark.parametrize("state", ["SEND", "MOVE", "DETECT_CONTACT", "PROBE", "PROBE_AROUND", "LEG_UP"])
+def test_a_state_machine_that_was_held_up_ends_the_walk(state):
+    robot = walker_in(state)
+    held_up(robot, 1.0)
+    robot.come_to("STOPPED")
+    assert robot.reference.reason == "the state machine was held up for 1.0 s"
+    assert robot.tell("forward").taken
+
+
+def test_a_delay_that_the_controllers_bear_ends_nothing():
+    robot = walker_in("PROBE")
+    held_up(robot, 0.05)
+    robot.run(0.5)
+    assert robot.state == "PROBE"
+
+
+def test_a_robot_that_rests_goes_on_resting():
+    robot = Walker(command="stand")
+    robot.come_to("STAND")
+    held_up(robot, 1.0)
+    assert robot.state == "STAND"
