@@ -13,7 +13,7 @@ _REMEDY = "`surefoot service install`, or `USER - rtprio 80` in /etc/security/li
 
 
 def claim(priority: int, core: int) -> bool:
-    """Give every thread of this process a real-time priority and one core, and keep its memory from being swapped out.
+    """Give every thread of this process a real-time priority and one core, and keep its memory in place.
 
     Threads that are made later have both too. To be called after all that is slow: as long as such a process
     computes, its core is closed to ordinary programs. On one core it is not moved a thousand times a second from

@@ -113,9 +113,8 @@ def test_one_that_is_lent_is_told_with_the_process_that_has_it():
 
 def test_one_that_is_late_stands_out():
     picture = full_picture()
-    picture.note_status(
-        ProcessStatus(process="wbc", life="RUN", nominal_hz=250.0, input=("mpc/policy",), input_age_s=np.array([0.25]))
-    )
+    late = {"input": ("mpc/policy",), "input_age_s": np.array([0.25])}
+    picture.note_status(ProcessStatus(process="wbc", life="RUN", nominal_hz=250.0, **late))
     text = shown(picture)
     assert "mpc/policy 250/100" in text and "mpc is late" in text
 
