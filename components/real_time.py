@@ -8,6 +8,7 @@ import resource
 from pathlib import Path
 
 _THREADS = Path("/proc/self/task")
+_TOPOLOGY = "/sys/devices/system/cpu"
 _MCL_CURRENT, _MCL_FUTURE, _MCL_ONFAULT = 1, 2, 4  # of mlockall(2)
 _REMEDY = "`surefoot service install`, or `USER - rtprio 80` in /etc/security/limits.d/ and a new login"
 
@@ -23,14 +24,15 @@ def claim(priority: int, core: int) -> bool:
 
     Args:
         priority: of SCHED_FIFO, 1 to 99; the higher interrupts the lower.
-        core: of those that this process may use, counted from 0; where there are fewer, the last.
+        core: of those that this process may use, counted from 0; where there are fewer, the last. Two threads of
+            one core (hyper-threading) count as two, the second ones after all first ones.
 
     Returns:
         Whether the machine permits it; `refusal` says why not.
     """
     if not _permitted(priority):
         return False
-    cores = sorted(os.sched_getaffinity(0))
+    cores = _cores(os.sched_getaffinity(0))
     for thread in _THREADS.iterdir():
         try:
             os.sched_setscheduler(int(thread.name), os.SCHED_FIFO, os.sched_param(priority))
@@ -50,6 +52,24 @@ def refusal(priority: int) -> str:
         f"no real-time priority {priority} (run.realtime_priority): other programs may hold up the control chain, "
         f"and the robot is damped when commands are late; {_REMEDY}"
     )
+
+
+def _cores(allowed: set[int]) -> list[int]:
+    """In an order in which neighbours share no core as long as there is another one."""
+
+    def place(thread: int) -> tuple[int, int]:
+        return sum(other < thread for other in _threads_of_its_core(thread) & allowed), thread
+
+    return sorted(allowed, key=place)
+
+
+def _threads_of_its_core(thread: int) -> set[int]:
+    try:
+        spans = Path(f"{_TOPOLOGY}/cpu{thread}/topology/thread_siblings_list").read_text().strip().split(",")
+    except OSError:
+        return {thread}
+    ends = [(int(span.split("-")[0]), int(span.split("-")[-1])) for span in spans]
+    return {other for first, last in ends for other in range(first, last + 1)}
 
 
 def _permitted(priority: int) -> bool:

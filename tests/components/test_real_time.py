@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from surefoot.bus.topics import processes
+from surefoot.components import real_time
 from surefoot.components.real_time import refusal
 
 needs_permission = pytest.mark.skipif(bool(refusal(40)), reason="this user may ask for no real-time priority")
@@ -32,7 +33,7 @@ def test_threads_made_before_and_after_have_the_priority():
 def test_threads_made_before_and_after_keep_to_one_core(core):
     wait = "threading.Thread(target=time.sleep, args=(5,), daemon=True).start()\n"
     tell = "print({core for t in os.listdir('/proc/self/task') for core in os.sched_getaffinity(int(t))})"
-    cores = sorted(os.sched_getaffinity(0))
+    cores = real_time._cores(os.sched_getaffinity(0))
     assert said(f"{wait}real_time.claim(40, {core})\n{wait}{tell}") == f"{{{cores[min(core, len(cores) - 1)]}}}"
 
 
@@ -59,3 +60,22 @@ def test_the_nearer_to_the_motors_the_more_urgent():
 def test_what_feeds_one_another_in_every_cycle_shares_a_core():
     core = {name: process.core for name, process in processes().items() if process.urgency}
     assert core == {"io": 0, "estimator": 0, "wbc": 1, "fsm": 1, "mpc": 2}
+
+
+@pytest.mark.parametrize(
+    ("siblings", "order"),
+    [
+        (["0-1", "0-1", "2-3", "2-3"], [0, 2, 1, 3]),
+        (["0,2", "1,3", "0,2", "1,3"], [0, 1, 2, 3]),
+        (["0-1", "0-1"], [0, 1]),
+        ([None, None, None], [0, 1, 2]),
+    ],
+)
+def test_threads_of_one_core_are_not_taken_for_two_cores(siblings, order, tmp_path, monkeypatch):
+    for thread, text in enumerate(siblings):
+        if text is not None:
+            (tmp_path / f"cpu{thread}/topology").mkdir(parents=True)
+            (tmp_path / f"cpu{thread}/topology/thread_siblings_list").write_text(text + "\n")
+    monkeypatch.setattr(real_time, "_TOPOLOGY", str(tmp_path))
+    assert real_time._cores(set(range(len(siblings)))) == order
+    assert real_time._cores({1}) == [1]
