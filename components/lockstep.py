@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable, Iterable
 from time import perf_counter
 
@@ -34,7 +35,7 @@ class LocalExecutor:
         self.component = component
         self.inbox = Inbox(component.inputs)
         self.active = False
-        self.step_ms: list[float] = []
+        self.step_ms = array("f")  # six million in an hour
         self.journal: Journal | None = None
         self._t = 0.0
         self._bus = bus

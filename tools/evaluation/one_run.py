@@ -105,6 +105,6 @@ def _grade(
     }
 
 
-def _percentiles(values: list[float]) -> dict[str, float]:
+def _percentiles(values: Sequence[float]) -> dict[str, float]:
     p50, p99 = np.percentile(values, [50, 99]).tolist()
     return {"p50": p50, "p99": p99, "max": max(values)}

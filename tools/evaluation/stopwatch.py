@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from time import perf_counter
 
 from surefoot.hw.mujoco.backend import MujocoRobot
@@ -15,7 +16,7 @@ class Stopwatch:
     """
 
     def __init__(self, robot: MujocoRobot):
-        self.step_ms: list[float] = []
+        self.step_ms = array("f")
         self._advance = robot.advance
         vars(robot)["advance"] = self  # an instance's own attribute goes before its class's method
 
