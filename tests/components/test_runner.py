@@ -119,6 +119,7 @@ def process(monkeypatch):
     monkeypatch.setattr(runner, "Session", Bus)
     monkeypatch.setattr(runner, "ProcessEnd", Told)
     monkeypatch.setattr("surefoot.components.health._PERIOD_S", 0.0)
+    monkeypatch.setattr(runner, "claim", lambda priority, core: False)  # it would be this process's, to its end
 
     def make(kind, relieves=False, which="monotonic", network=None, boot=0, **bus):
         monkeypatch.setattr(runner, "component_class", lambda name: kind)
@@ -151,6 +152,30 @@ def test_after_a_failed_step_too(process):
         fsm.run()
     assert fsm._stepper.component.ramped == 3 and not fsm._session.open
     assert set(fsm._session.lives()[-3:]) == {"FAILED"}
+
+
+class PassingTime:
+    """In place of `time`: a clock that goes on by sleeping; one sleep takes a second too long."""
+
+    def __init__(self, held_up_in):
+        self.now, self.slept, self.held_up_in = 1000.0, [], held_up_in
+
+    def monotonic(self):
+        return self.now
+
+    def sleep(self, seconds):
+        self.slept.append(seconds)
+        self.now += seconds + 1.002 * (len(self.slept) == self.held_up_in)
+
+
+def test_a_timer_that_was_held_up_lets_its_inputs_come_before_it_reads(process, monkeypatch):
+    fsm, passing = process(Ramp), PassingTime(held_up_in=2)
+    monkeypatch.setattr(runner, "time", passing)
+    stepped = []
+    monkeypatch.setattr(fsm, "_live_step", lambda: stepped.append(passing.now))
+    fsm._follow_timer()
+    np.testing.assert_allclose(np.diff(stepped), [0.004 + 1.002 + runner._CATCH_UP_S, 0.0], atol=1e-9)
+    assert fsm._stepper.health.overruns == 250 + 4
 
 
 def test_the_last_command_of_the_whole_body_controller_brakes(process):
