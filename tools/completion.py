@@ -21,7 +21,8 @@ _WORDS = {
 _DEPLOYMENTS = ("config", "scenario", "connect")
 """Arguments that name a deployment."""
 
-_RECORDING = shtab.glob("*.mcap")
+_RECORDING = shtab.glob("*.mcap") | {"zsh": "_files -g '*.mcap'"}
+"""In brackets, as shtab has it, zsh takes a single pattern for qualifiers and finds no file."""
 
 
 def script(parser: argparse.ArgumentParser, shell: str) -> str:

@@ -1,7 +1,11 @@
-"""The Tab key: what bash offers is what the parser takes."""
+"""The Tab key: what the shells offer is what the parser takes."""
 
+import os
+import pty
+import select
 import shutil
 import subprocess
+import time
 
 import pytest
 
@@ -63,3 +67,35 @@ def test_a_shell_reads_its_script(shell, capsys, tmp_path):
     if shutil.which(shell) is None:
         pytest.skip(f"no {shell} on this machine to read it")
     subprocess.run([shell, "-n", file], check=True)
+
+
+def typed(shell, setup, line, awaited, folder):
+    """What a shell on a terminal shows of a line with its tabs, until it shows what is awaited."""
+    ours, its = pty.openpty()
+    process = subprocess.Popen(shell, cwd=folder, stdin=its, stdout=its, stderr=its, start_new_session=True)
+    shown, end = "", time.monotonic() + 20.0
+    os.write(ours, f"{setup}; echo re''ady\n".encode())
+    try:
+        while awaited not in shown and time.monotonic() < end:
+            if select.select([ours], [], [], 0.1)[0]:
+                shown += os.read(ours, 4096).decode(errors="replace")
+            if "\nready" in shown.replace("\r", ""):
+                shown = ""
+                os.write(ours, line.encode())
+    finally:
+        process.kill()
+        process.wait()
+        os.close(ours)
+        os.close(its)
+    return shown
+
+
+@pytest.mark.skipif(shutil.which("zsh") is None, reason="no zsh on this machine to type into")
+@pytest.mark.parametrize(
+    ("line", "awaited"), [("surefoot info \t", "walk.mcap"), ("surefoot eval --vis\t", "--vision")]
+)
+def test_zsh_completes_what_is_typed(line, awaited, tmp_path):
+    (tmp_path / "walk.mcap").touch()
+    (tmp_path / "_surefoot").write_text(script(make_parser(), "zsh"))
+    setup = f"surefoot() {{ }}; fpath=({tmp_path} $fpath); autoload -U compinit; compinit -u -d {tmp_path}/dump"
+    assert awaited in typed(["zsh", "-f", "-i"], setup, line, awaited, tmp_path)
