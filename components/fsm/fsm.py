@@ -103,7 +103,7 @@ class Fsm(Component):
         for message in inbox.new("operator/command"):
             outbox.publish("operator/answer", self._answer(message, now))
         if now is not None:
-            if held_up_s > _HELD_UP_S and self._posture is None:
+            if held_up_s > _HELD_UP_S and self._walks:
                 end(self._cycle, now, f"the state machine was held up for {held_up_s:.1f} s")
             self._advance(now, inbox)
         outbox.publish("fsm/reference", self._reference(t))
@@ -210,7 +210,7 @@ class Fsm(Component):
 
     def _sit(self, now: Observation, asked: str) -> Answer:
         """Settle from any state; a leg in the air is put down first."""
-        if self._posture is None and self._cycle.state != State.STOPPED:
+        if self._walks:
             self._wish = asked
             self._cycle.stop(now, f"commanded {asked}")
         elif self._posture not in (Posture.DAMP, Posture.SIT_DOWN):
@@ -220,6 +220,10 @@ class Fsm(Component):
     def _sit_down(self, now: Observation, asked: str) -> None:
         self._wish = ""
         self._move_joints(Posture.SIT_DOWN, self._lie_q, now, f"commanded {asked}")
+
+    @property
+    def _walks(self) -> bool:
+        return self._posture is None and self._cycle.state != State.STOPPED
 
     @property
     def _cut(self) -> bool:
@@ -260,13 +264,12 @@ class Fsm(Component):
 
     def _grant_wish(self, now: Observation) -> None:
         """Obey what had to wait for the robot to rest; to sit no longer than there is a way back for the leg."""
-        walks = self._posture is None and self._cycle.state != State.STOPPED
-        if self._wish.startswith("sit") and walks:
+        if self._wish.startswith("sit") and self._walks:
             if self._cycle.state != State.RETURN_SAFE or self._cycle.waited_s(now) > self._settings.put_down_s:
                 self._sit_down(now, self._wish)
             return
         moves = self._posture in (Posture.HOLD, Posture.STAND_UP, Posture.SIT_DOWN)
-        rests = not moves and not walks
+        rests = not moves and not self._walks
         if self._wish and rests and now.t >= self._cycle.reference.base_t1:
             wish, self._wish = self._wish, ""
             if wish != "stand" or self._posture is Posture.DAMP:

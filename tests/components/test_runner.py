@@ -168,14 +168,16 @@ class PassingTime:
         self.now += seconds + 1.002 * (len(self.slept) == self.held_up_in)
 
 
-def test_a_timer_that_was_held_up_lets_its_inputs_come_before_it_reads(process, monkeypatch):
+@pytest.mark.parametrize(("hub", "waits_s", "missed"), [(False, runner._CATCH_UP_S, 254), (True, 0.0, 250)])
+def test_a_timer_that_was_held_up_lets_its_inputs_come_before_it_reads(hub, waits_s, missed, process, monkeypatch):
     fsm, passing = process(Ramp), PassingTime(held_up_in=2)
+    fsm.hub = hub
     monkeypatch.setattr(runner, "time", passing)
     stepped = []
     monkeypatch.setattr(fsm, "_live_step", lambda: stepped.append(passing.now))
     fsm._follow_timer()
-    np.testing.assert_allclose(np.diff(stepped), [0.004 + 1.002 + runner._CATCH_UP_S, 0.0], atol=1e-9)
-    assert fsm._stepper.health.overruns == 250 + 4
+    np.testing.assert_allclose(np.diff(stepped), [0.004 + 1.002 + waits_s, 0.0 if waits_s else 0.002], atol=1e-9)
+    assert fsm._stepper.health.overruns == missed
 
 
 def test_the_last_command_of_the_whole_body_controller_brakes(process):

@@ -355,3 +355,9 @@ def test_a_robot_that_rests_goes_on_resting():
     robot.come_to("STAND")
     held_up(robot, 1.0)
     assert robot.state == "STAND"
+
+
+def test_a_walk_that_is_paused_can_be_resumed_after_it():
+    robot = resting_for("pause")
+    held_up(robot, 1.0)
+    assert robot.state == "STOPPED" and robot.tell("resume").taken
