@@ -27,8 +27,8 @@ _LOOK_S = 0.2
 _LET_GO_S = 1.0  # shorter than the supervisor's patience
 _LEAVE_S = 0.1
 _GREET_S = 1.0  # without a release
-_HELD_UP_S = 0.03  # a process so late was stopped or starved, and with it the threads that bring its inputs:
-_CATCH_UP_S = 0.02  # without this it would take an input for stale that waits to be read
+_HELD_UP_S = 0.03  # a process so late was stopped or starved, and so were its threads that bring the inputs
+_CATCH_UP_S = 0.02  # for those threads: what waits to be read would else count as stale
 
 
 class Runner:

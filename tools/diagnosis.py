@@ -84,11 +84,8 @@ def clock_stands(picture: Picture, now: float | None = None) -> str:
 
 def worst_input(status: ProcessStatus) -> tuple[str, float, float] | None:
     """The input that is oldest for what its topic allows: its key, its age and that limit [s]."""
-    ages = [(age / limit, key, age) for key, age, limit in _ages(status) if age >= 0.0]
-    if not ages:
-        return None
-    _, key, age = max(ages)
-    return key, age, TOPICS[key].stale_after_s
+    ages = [each for each in _ages(status) if each[1] >= 0.0]
+    return max(ages, key=lambda each: each[1] / each[2], default=None)
 
 
 def _ages(status: ProcessStatus) -> list[tuple[str, float, float]]:
