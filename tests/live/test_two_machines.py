@@ -89,12 +89,13 @@ def test_in_real_time_the_robot_is_safe_without_the_link_and_goes_on_with_it(lin
     wait(lambda: len(live.heard["mpc/policy"]) > policies + 20)
     assert lowered(live), "a robot that lies on the ground is not to rise by itself"
 
+    answers = {"sit": "the robot sits down, then it is damped", "stand": "the robot stands up first"}
     for command, state in (("sit", "DAMP"), ("stand", "STAND")):
         try:
             said = live.link.on("laptop", *CLI, "command", command, "--connect", str(live.config))
         except subprocess.CalledProcessError:
             wait(lambda: False)  # it has ended for the reason that `wait` knows, or the test fails there
-        assert said == f"told tls/{live.link.address['robot']}:7448: {command}\n"
+        assert said == f"told tls/{live.link.address['robot']}:7448: {command}\n{answers[command]}\n"
         wait(lambda state=state: live.last("fsm/reference").state == state)
     wait(lambda: follows_a_policy(live))
     assert upright(live)
