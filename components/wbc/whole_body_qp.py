@@ -109,11 +109,8 @@ class WholeBodyQp:
         self._fill(task)
         if self._solver is None:
             self._solver = piqp.DenseSolver()
-            settings = self._solver.settings
             # The default preconditioner calls feasible problems of this scale infeasible.
-            settings.preconditioner_iter = 0
-            settings.eps_abs, settings.eps_rel = 1e-6, 1e-6
-            settings.check_duality_gap = False
+            self._solver.settings.preconditioner_iter = 0
             setup = self._solver.setup
         else:
             setup = self._solver.update
