@@ -11,7 +11,7 @@ from surefoot.bus.messages import FsmEvent, MotionReference, OperatorAnswer, Ope
 from surefoot.bus.topics import TOPICS
 from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.fsm.observation import Observation, Observer
-from surefoot.components.fsm.posture import Posture, farthest_joint, posture_reference
+from surefoot.components.fsm.posture import JointMove, Posture, posture_reference
 from surefoot.components.fsm.probing_cycle import ProbingCycle
 from surefoot.components.fsm.state import State
 from surefoot.components.fsm.walk_commands import end, obey, turn_to
@@ -61,13 +61,10 @@ class Fsm(Component):
     complete = ("state/estimate",)  # one that is invalid must not be passed over
     memory: ClassVar[Memory] = Memory(
         "_reason",
-        "_joint_from",
-        "_joint_to",
-        "_joint_t0",
-        "_joint_t1",
         "_wish",
         "_t",
         _posture=Posture,
+        _move=JointMove,
         _cycle=ProbingCycle,
     )
 
@@ -80,8 +77,7 @@ class Fsm(Component):
         self._observer = Observer(robot)
         self._posture: Posture | None = Posture.DAMP
         self._reason = "waiting for a command"
-        self._joint_from = self._joint_to = self._stand_q
-        self._joint_t0 = self._joint_t1 = 0.0
+        self._move = JointMove(self._stand_q, self._stand_q)
         self._wish = ""
         self._events: list[FsmEvent] = []
         self._t = 0.0
@@ -236,11 +232,11 @@ class Fsm(Component):
         if self._posture is not Posture.DAMP and tilt > limit:
             self._damp(f"tilt {tilt:.2f} rad, limit {limit} rad: fallen")
             return
-        if self._posture is Posture.STAND_UP and now.t >= self._joint_t1:
+        if self._posture is Posture.STAND_UP and now.t >= self._move.t1:
             self._stood_up(now)
         elif self._posture is Posture.HOLD:
             self._check_hold(now)
-        elif self._posture is Posture.SIT_DOWN and now.t >= self._joint_t1:
+        elif self._posture is Posture.SIT_DOWN and now.t >= self._move.t1:
             self._damp(self._reason.replace("commanded sit", "sitting"))
         elif self._posture is Posture.STAND:
             self._cycle.step(now)
@@ -254,7 +250,7 @@ class Fsm(Component):
 
     def _stood_up(self, now: Observation) -> None:
         """A robot whose joints have not followed does not stand, whatever was asked of them."""
-        joint, error = farthest_joint(now.estimate.q, self._joint_to)
+        joint, error = self._move.farthest(now.estimate.q)
         limit = self._settings.posture_error_max
         if error > limit:
             self._damp(f"did not stand up: {joint} is {error:.2f} rad from its posture, limit {limit} rad")
@@ -277,25 +273,23 @@ class Fsm(Component):
 
     def _stiffen(self, now: Observation, reason: str) -> None:
         """The joints are held where they are, by gains that come up in `hold_s`; never beyond their range."""
-        self._joint_from = self._joint_to = np.clip(now.estimate.q, self._lower, self._upper)
-        self._joint_t0, self._joint_t1 = now.t, now.t + self._settings.hold_s
+        q = np.clip(now.estimate.q, self._lower, self._upper)
+        self._move = JointMove(q, q, now.t, now.t + self._settings.hold_s)
         self._enter(Posture.HOLD, reason)
 
     def _check_hold(self, now: Observation) -> None:
         """A joint that is driven away, by a wrong sign or order, shows while the gains are still low."""
-        joint, error = farthest_joint(now.estimate.q, self._joint_to)
+        joint, error = self._move.farthest(now.estimate.q)
         limit = self._settings.hold_error
         if error > limit:
             self._damp(f"{joint} left its hold by {error:.2f} rad, limit {limit} rad")
-        elif self._wish and now.t >= self._joint_t1:
+        elif self._wish and now.t >= self._move.t1:
             self._move_joints(Posture.STAND_UP, self._stand_q, now, f"commanded {self._wish}")
 
     def _move_joints(self, posture: Posture, to: np.ndarray, now: Observation, reason: str) -> None:
-        settings = self._settings
-        self._joint_from, self._joint_to = now.estimate.q.copy(), to
-        farthest = float(np.abs(self._joint_to - self._joint_from).max())
-        self._joint_t0 = now.t
-        self._joint_t1 = now.t + max(settings.posture_min_s, farthest / settings.posture_speed)
+        q, settings = now.estimate.q.copy(), self._settings
+        seconds = max(settings.posture_min_s, float(np.abs(to - q).max()) / settings.posture_speed)
+        self._move = JointMove(q, to, now.t, now.t + seconds)
         self._enter(posture, reason)
 
     def _damp(self, reason: str) -> None:
@@ -327,15 +321,7 @@ class Fsm(Component):
             if self._posture is None:
                 return message
             return replace(message, state=str(self._posture), reason=self._reason)
-        return posture_reference(
-            t,
-            self._posture,
-            self._reason,
-            joint_from=self._joint_from,
-            joint_to=self._joint_to,
-            joint_t0=self._joint_t0,
-            joint_t1=self._joint_t1,
-        )
+        return posture_reference(t, self._posture, self._reason, self._move)
 
     def _send(self, outbox: Outbox) -> None:
         self._cycle.questions.send(outbox)
