@@ -5,6 +5,8 @@ from __future__ import annotations
 import ctypes
 import os
 import resource
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 _THREADS = Path("/proc/self/task")
@@ -44,6 +46,24 @@ def claim(priority: int, core: int) -> bool:
     return True
 
 
+@contextmanager
+def preferred(priority: int) -> Iterator[bool]:
+    """Inside it the calling thread has this real-time priority, if the machine permits it: whether it does."""
+    if not hasattr(os, "sched_setscheduler"):
+        yield False
+        return
+    before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+    except PermissionError:
+        yield False
+        return
+    try:
+        yield True
+    finally:
+        os.sched_setscheduler(0, before, parameters)
+
+
 def refusal(priority: int) -> str:
     """Why this machine refuses a real-time priority, with the remedy; empty where it does not."""
     if _permitted(priority):
@@ -73,13 +93,5 @@ def _threads_of_its_core(thread: int) -> set[int]:
 
 
 def _permitted(priority: int) -> bool:
-    """Found out on the calling thread, which is left as it was."""
-    if not hasattr(os, "sched_setscheduler"):
-        return False
-    before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
-    except PermissionError:
-        return False
-    os.sched_setscheduler(0, before, parameters)
-    return True
+    with preferred(priority) as permitted:
+        return permitted

@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import FrameType
 
 ENDS_RUN = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
-def heed() -> None:
-    """From now on each of them raises KeyboardInterrupt, but for those that are ignored, as `nohup` has it."""
+def heed(ends: Callable[[], bool] = lambda: False) -> None:
+    """From now on each of them raises KeyboardInterrupt, but for those that are ignored, as `nohup` has it.
+
+    Args:
+        ends: asked first, in the middle of anything; none is raised where it says that the run ends by itself.
+    """
+
+    def ask(number: int, frame: FrameType | None) -> None:
+        if not ends():
+            raise KeyboardInterrupt
+
     for number in ENDS_RUN:
         if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, signal.default_int_handler)
+            signal.signal(number, ask)
 
 
 @contextmanager

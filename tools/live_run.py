@@ -26,7 +26,7 @@ from surefoot.tools.solve_time import light_profile_reason
 from surefoot.tools.startup.dialog import Dialog
 from surefoot.tools.startup.readiness import Readiness
 from surefoot.tools.status_screen import screen
-from surefoot.tools.supervisor import Supervisor
+from surefoot.tools.supervisor import ENDED_BY_COMMAND, ENDED_BY_USER, Supervisor
 from surefoot.tools.verdict import Verdict, verdict
 from surefoot.tools.view.view_process import ViewProcess
 
@@ -89,7 +89,7 @@ def live_run(call: RunCall) -> int:
     console.print(f"{title}; logs in {deployment.run.log_dir}/; Ctrl-C ends the run")
     if deployment.operator.heartbeat_s and not beats:
         console.print("the robot asks for the operator's heartbeat: surefoot heartbeat, or run with --beat")
-    heed()
+    heed(supervisor.end)
     dialog = _dialog(deployment, console, supervisor) if guided else None
     on_screen = title if interactive else ""
     with _view(deployment, call.view) as view:
@@ -154,7 +154,8 @@ def _supervised(
         nonlocal state
         if view is not None and (news := view.news()):
             supervisor.note(news)
-        state = verdict(picture, deployment.terrain.kind, seconds, bool(title))
+        if not state.over:  # the robot that sits down before the end has nothing more to say to it
+            state = verdict(picture, deployment.terrain.kind, seconds, bool(title))
         return state.reason if state.over else ""
 
     def drawn(picture: Picture) -> Group:
@@ -168,9 +169,8 @@ def _supervised(
         else:
             reason = supervisor.run(until, StatusLines(console))
     except KeyboardInterrupt:
-        reason = "ended by the user"
-        return reason, Verdict(reason, over=True, good=True)
-    if reason == "stopped by command":
+        reason = ENDED_BY_USER
+    if reason in (ENDED_BY_USER, ENDED_BY_COMMAND):
         state = Verdict(reason, over=True, good=True)
     return reason, state
 

@@ -1,4 +1,4 @@
-"""How a run in real time ends that has lost a process: the robot settles first, where it still can."""
+"""How a run ends whose robot stands on its own time: it sits down first, where it still can."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ _MORE_S = 0.2  # after the controller has lowered the robot by itself
 
 
 class Parting:
-    """Has the robot sit down when another process has ended, and waits for it to be damped.
+    """Has the robot sit down when the run is to end or has lost a process, and waits for it to be damped.
 
-    Damped at once it would fall towards a leg that is in the air or pressed.
+    Damped at once it would fall from its height, and towards a leg that is in the air or pressed. A simulated
+    robot on simulated time needs no such care: there a run that is to end ends.
     """
 
     def __init__(
@@ -30,22 +31,47 @@ class Parting:
     ):
         """For one run; `command` reaches the robot, `note` tells the operator."""
         self._picture, self._command, self._note = picture, command, note
-        wbc, at_hub = deployment.wbc, deployment.network.at_hub
+        wbc, run, at_hub = deployment.wbc, deployment.run, deployment.network.at_hub
         # Only the machine of io has the robot's end in its hand.
         self._settle_s = deployment.operator.settle_s if at_hub else 0.0
         lowered_s = TOPICS["fsm/reference"].stale_after_s + wbc.hold_s + wbc.lower_m / wbc.lower_speed
         self._alone_s = min(lowered_s + _MORE_S, self._settle_s)
+        self._catches = at_hub and (run.clock != "simulated" or deployment.hw.backend == "aliengo")
         self._until: float | None = None
+        self._why = ""
+
+    @property
+    def settles(self) -> bool:
+        """Whether a run that is to end now has the robot sit down first."""
+        return self._catches and not self._settled
+
+    def end(self, why: str) -> str:
+        """Called in every look with why the run is to end, if it is: the first such reason, once the robot rests.
+
+        Until then, and while there is none, "".
+        """
+        self._why = self._why or why
+        if not self._why or not self._catches:
+            return self._why
+        return self._settle(self._why, self._settle_s, "the run is to end")
 
     def lost(self, name: str, what: str) -> str:
         """Called while a process is gone: why the run ends now, or "" while the robot settles."""
-        if name in _CANNOT_SETTLE or self._settled:
+        if name in _CANNOT_SETTLE:
+            return what
+        if name == "fsm":
+            return self._settle(what, self._alone_s, "")
+        return self._settle(what, self._settle_s, f"{name} has ended")
+
+    def _settle(self, what: str, seconds: float, reason: str) -> str:
+        """`what` once the robot rests or has been waited for long enough; with a `reason` it is told to sit."""
+        if self._settled:
             return what
         if self._until is None:
-            self._until = time.monotonic() + (self._alone_s if name == "fsm" else self._settle_s)
+            self._until = time.monotonic() + seconds
             self._note(f"{what}; the robot sits down before the run ends")
-            if name != "fsm":
-                self._command(f"sit: {name} has ended")
+            if reason:
+                self._command(f"sit: {reason}")
         return what if time.monotonic() >= self._until else ""
 
     @property

@@ -24,6 +24,8 @@ from surefoot.tools.restart_policy import RestartPolicy
 from surefoot.tools.restart_queue import RestartQueue
 from surefoot.tools.supervisor_desk import SupervisorDesk
 
+ENDED_BY_USER, ENDED_BY_COMMAND = "ended by the user", "stopped by command"
+
 MAX_CRASHES = 3
 """In simulation a process that ends by itself is started again as often as this."""
 
@@ -72,6 +74,7 @@ class Supervisor:
         self._sources, self._record = sources, record
         self._recorder: RecorderProcess | None = None
         self._clock_stands = False
+        self._asked = ""  # why a person wants it to end
         self.picture = Picture(simulated=self._simulated)
         for name in PROCESSES:
             if name not in self._network.components_here:
@@ -87,7 +90,7 @@ class Supervisor:
     def run(self, until: Callable[[Picture], str], each: Callable[[Picture], None] = lambda picture: None) -> str:
         """Start everything; until `until(picture)` gives a reason to end, which is returned.
 
-        Whatever happens, no process is left behind.
+        A robot that stands on its own time sits down first. Whatever happens, no process is left behind.
 
         Raises:
             BusError: io did not come up or cannot be reached, another run has this namespace, or this machine's
@@ -116,13 +119,19 @@ class Supervisor:
                 if not self._simulated and first and self.picture.processes["fsm"].status is not None:
                     self._desk.command(first)
                     first = ""
-                reason = until(self.picture) or self._reconcile()
-                if reason:
+                if reason := self._reconcile() or self._parting.end(until(self.picture) or self._asked):
                     self.picture.ending = reason
                     return reason
                 time.sleep(_LOOK_S)
         finally:
             self.stop()
+
+    def end(self) -> bool:
+        """Have the run end once the robot sits: not where nothing is to be waited for, or it was asked before."""
+        if self._asked or not self._parting.settles:
+            return False
+        self._asked = ENDED_BY_USER
+        return True
 
     def stop(self) -> None:
         """End every process in order, by force those that do not; a second Ctrl-C does not break it off."""
@@ -210,10 +219,10 @@ class Supervisor:
     # Reconcile ------------------------------------------------------------------------------------------
 
     def _reconcile(self) -> str:
-        """Obey requests; start again what ended; a reason to end the run, or ""."""
+        """Obey requests; start again what ended; a reason to end the run at once, or ""."""
         for request in self._desk.requests():
-            if reason := self._obey(request):
-                return reason
+            if not self._asked:  # a run that is to end begins nothing
+                self._obey(request)
         self._settle_handovers()
         if reason := self._bury() or self._take_back():
             return reason
@@ -223,18 +232,17 @@ class Supervisor:
             self.restart(*due)
         return ""
 
-    def _obey(self, request: str) -> str:
-        """Do what a person asks; a reason to end the run, or ""."""
+    def _obey(self, request: str) -> None:
+        """Do what a person asks."""
         match request.split():
             case ["stop", *_]:
-                return "stopped by command"
+                self._asked = self._asked or ENDED_BY_COMMAND
             case ["restart", name]:
                 self._ask_restart(name, "on request")
             case ["lend", name, pid] if pid.isdecimal():
                 self._lending.lend(name, int(pid), self._lending_refusal)
             case words:
                 self.note(f"not understood: {' '.join(words)[:80]!r}")
-        return ""
 
     def _lending_refusal(self, name: str) -> str:
         return self._policy.refusal(name) if name in PROCESSES else f": there are {', '.join(PROCESSES)}"

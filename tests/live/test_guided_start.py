@@ -1,4 +1,4 @@
-"""`surefoot run` on a terminal: it examines the robot, asks before each motion, and the robot stands."""
+"""`surefoot run` on a terminal: it examines the robot, asks before each motion, stands it, and sets it down."""
 
 import os
 import pty
@@ -6,7 +6,7 @@ import select
 import subprocess
 import sys
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 from emulation import PATIENT, emulator
 
@@ -38,11 +38,21 @@ class Terminal:
         begin = len(self.seen)
         while words not in self.seen[begin:]:
             assert time.monotonic() < end and self.run.poll() is None, self.seen
-            if select.select([self._fd], [], [], 0.2)[0]:
-                self.seen += os.read(self._fd, 65536).decode(errors="replace")
+            self._read()
+
+    def reads_on(self):
+        """Until the run is over."""
+        with suppress(OSError):  # nobody holds the other end any more
+            while self.run.poll() is None:
+                self._read()
+        assert self.run.wait(PATIENCE_S) == 0, self.seen
 
     def types(self, line):
         os.write(self._fd, f"{line}\n".encode())
+
+    def _read(self):
+        if select.select([self._fd], [], [], 0.2)[0]:
+            self.seen += os.read(self._fd, 65536).decode(errors="replace")
 
     def close(self):
         self.run.terminate()
@@ -80,7 +90,7 @@ def guided(tmp_path, *settings):
             terminal.close()
 
 
-def test_a_robot_that_lies_is_examined_asked_for_and_stands(tmp_path):
+def test_a_robot_that_lies_is_examined_asked_for_stands_and_sits_down_before_the_run_ends(tmp_path):
     with guided(tmp_path, "hw.aliengo.first_answer_s=60", "fsm.hold_s=0.2") as (terminal, robot):
         terminal.reads("the robot is sent zero gains")
         for question, answer in (("Does it hang (h)", "l"), ("Bring up the gains?", "y"), ("Stand up?", "y")):
@@ -88,6 +98,11 @@ def test_a_robot_that_lies_is_examined_asked_for_and_stands(tmp_path):
             terminal.types(answer)
         terminal.reads("It stands.")
         assert "level: tilted by" in terminal.seen and robot.plant.truth().p_WB[2] > 0.3
+        terminal.run.terminate()
+        terminal.reads_on()
+        assert "the robot sits down before the run ends" in (tmp_path / "supervisor.log").read_text()
+        lying = robot.plant.truth()
+        assert lying.p_WB[2] < 0.2 and abs(lying.quat_WB[0]) > 0.99
 
 
 def test_a_robot_that_does_not_answer_is_not_started(tmp_path):

@@ -1,9 +1,11 @@
-"""A run in real time that has lost a process: the robot sits down, then the run ends."""
+"""A run that is to end or has lost a process: the robot sits down first where nobody else holds it."""
 
 import pytest
 
 from surefoot.bus.messages import HardwareState, MotionReference
-from surefoot.config.deployment import Deployment
+from surefoot.config.aliengo import Aliengo
+from surefoot.config.deployment import Deployment, Run
+from surefoot.config.hw import Hw
 from surefoot.config.operator import Operator
 from surefoot.tools.parting import Parting
 from surefoot.tools.picture import Picture
@@ -11,13 +13,15 @@ from surefoot.tools.picture import Picture
 WHAT = "it ended with signal 9"
 
 
-class Run:
+class Probing:
     """A robot that probes."""
 
-    def __init__(self, settle_s=60.0):
+    def __init__(self, settle_s=60.0, clock="monotonic", backend="mujoco"):
         self.picture = Picture(reference=MotionReference(state="PROBE"), hardware=HardwareState())
         self.commands, self.notes = [], []
-        deployment = Deployment(operator=Operator(settle_s=settle_s))
+        wire = Aliengo(address="127.0.0.1", exchange="cycle" if backend == "aliengo" else "timer")
+        hw, operator = Hw(backend=backend, aliengo=wire), Operator(settle_s=settle_s)
+        deployment = Deployment(run=Run(clock=clock), hw=hw, operator=operator)
         self.parting = Parting(deployment, self.picture, self.commands.append, self.notes.append)
 
     def lost(self, name):
@@ -26,7 +30,7 @@ class Run:
 
 @pytest.mark.parametrize("name", ["mpc", "trajopt", "elevation_map"])
 def test_the_robot_is_told_once_to_sit_and_the_run_ends_when_it_is_damped(name):
-    run = Run()
+    run = Probing()
     assert [run.lost(name) for _ in range(3)] == ["", "", ""]
     assert run.commands == [f"sit: {name} has ended"] and run.notes == [
         f"{WHAT}; the robot sits down before the run ends"
@@ -36,7 +40,7 @@ def test_the_robot_is_told_once_to_sit_and_the_run_ends_when_it_is_damped(name):
 
 
 def test_without_a_state_machine_the_controller_lowers_the_robot_by_itself():
-    run = Run()
+    run = Probing()
     assert run.lost("fsm") == "" and run.commands == []
     run.picture.hardware = HardwareState(damping=True)
     assert run.lost("fsm") == WHAT
@@ -44,16 +48,37 @@ def test_without_a_state_machine_the_controller_lowers_the_robot_by_itself():
 
 @pytest.mark.parametrize("name", ["io", "estimator", "wbc"])
 def test_what_it_cannot_settle_without_ends_the_run_at_once(name):
-    assert Run().lost(name) == WHAT
+    assert Probing().lost(name) == WHAT
 
 
 def test_it_is_not_waited_for_longer_than_it_may_take_and_another_loss_is_not_waited_for():
-    assert Run(settle_s=0.0).lost("mpc") == WHAT
-    run = Run()
+    assert Probing(settle_s=0.0).lost("mpc") == WHAT
+    run = Probing()
     assert run.lost("mpc") == "" and run.lost("wbc") == WHAT
 
 
 def test_before_the_robot_has_begun_nothing_is_waited_for():
-    run = Run()
+    run = Probing()
     run.picture.hardware = None
-    assert run.lost("mpc") == WHAT
+    assert run.lost("mpc") == WHAT and run.parting.end("time is up") == "time is up"
+
+
+@pytest.mark.parametrize(("clock", "backend"), [("monotonic", "mujoco"), ("simulated", "aliengo")])
+def test_a_run_that_is_to_end_has_the_robot_sit_down_once_and_ends_for_its_first_reason(clock, backend):
+    run = Probing(clock=clock, backend=backend)
+    assert run.parting.end("") == "" and run.commands == [] and run.parting.settles
+    assert [run.parting.end(why) for why in ("goal reached", "", "ended by the user")] == ["", "", ""]
+    assert run.commands == ["sit: the run is to end"] and len(run.notes) == 1
+    run.picture.reference = MotionReference(state="DAMP")
+    assert run.parting.end("") == "goal reached" and not run.parting.settles
+
+
+def test_a_process_that_is_lost_meanwhile_changes_nothing_if_the_robot_can_sit_without_it():
+    run = Probing()
+    assert run.parting.end("goal reached") == "" and run.lost("mpc") == "" and len(run.commands) == 1
+    assert run.lost("wbc") == WHAT
+
+
+def test_a_simulated_robot_on_simulated_time_is_not_waited_for():
+    run = Probing(clock="simulated")
+    assert run.parting.end("goal reached") == "goal reached" and run.commands == [] and not run.parting.settles

@@ -17,7 +17,7 @@ from surefoot.config.deployment import Deployment, Run
 from surefoot.config.hw import Hw
 from surefoot.config.network import Network
 from surefoot.config.typed_toml import to_table
-from surefoot.tools import launcher, lending, supervisor_desk
+from surefoot.tools import end_signals, launcher, lending, supervisor_desk
 from surefoot.tools import supervisor as supervisor_module
 from surefoot.tools.reload.source_watch import SourceWatch
 from surefoot.tools.supervisor import Supervisor
@@ -305,8 +305,8 @@ def test_a_storm_of_requests_ends_and_what_crashes_meanwhile_is_started_too(tmp_
     assert desk.done == ["estimator", "wbc"]
     estimator.popen = None
     desk.picture.note_status(ProcessStatus(process="wbc", boot=1, nominal_hz=250.0, steps=1))
-    assert desk.ask("stop", "restart fsm") == "stopped by command"
-    desk.ask()
+    desk.ask("stop", "restart fsm")
+    assert desk.supervisor._asked == "stopped by command"
     assert desk.done == ["estimator", "wbc", "mpc"]
     assert len(desk.picture.notes) == 3  # the crash and two restarts
 
@@ -385,6 +385,40 @@ def test_a_machine_with_other_settings_than_ios_starts_nothing(machine):
     ):
         supervisor.run(lambda picture: "enough")
     assert started == []
+
+
+def test_a_robot_that_stands_on_its_own_time_sits_down_before_the_run_ends(machine):
+    supervisor, _, bus = machine("robot", "monotonic")
+    supervisor.picture.hardware = HardwareState()
+    supervisor.picture.reference = MotionReference(state="PROBE")
+
+    def look(picture):
+        if len(bus.said) == 2:
+            picture.reference = MotionReference(state="DAMP")
+
+    assert supervisor.run(lambda picture: "enough", look) == "enough"
+    assert [payload for _, payload in bus.said] == [b"stand", b"sit: the run is to end"]
+
+
+@pytest.fixture
+def handlers():
+    """Puts back what is done about each signal."""
+    before = {number: signal.getsignal(number) for number in end_signals.ENDS_RUN}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+def test_a_signal_ends_a_run_at_once_if_it_is_the_second_or_there_is_nothing_to_wait_for(machine, handlers):
+    supervisor, _, _ = machine("robot", "monotonic")
+    end_signals.heed(supervisor.end)
+    with pytest.raises(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGTERM)
+    supervisor.picture.hardware = HardwareState()
+    supervisor.picture.reference = MotionReference(state="PROBE")
+    os.kill(os.getpid(), signal.SIGTERM)
+    with pytest.raises(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGINT)
 
 
 @pytest.mark.parametrize("clock", ["simulated", "monotonic"])

@@ -13,7 +13,8 @@ Start every process of a deployment and show how it goes, on one screen.
 
 The run ends when the goal is reached (on the planks: the platform is crossed), when the robot has fallen, has lost
 its estimate or is damped with `surefoot command damp`, after --for seconds of its time, or with Ctrl-C; then every
-process is ended in order. A robot that finds no safe foothold goes back to
+process is ended in order. Before that a robot that stands sits down, unless it is simulated on simulated time;
+a second Ctrl-C does not wait for it. A robot that finds no safe foothold goes back to
 its last one and stands: on a terminal the run goes on and waits for `surefoot command backward` (or left,
 right, forward, stop) from another one; with --plain, or without a terminal, that ends the run. So it is with a
 robot whose safety gate has latched: it lies, and waits for `surefoot command sit`, then `stand`.

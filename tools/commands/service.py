@@ -15,9 +15,10 @@ real-time priority and locked memory. Before each start `surefoot doctor` examin
 fails it is not started. The robot stays damped until `surefoot command stand`.
 
 install writes the unit; `systemctl start surefoot-NAME` starts it, `install --at-boot` also with the machine.
-remove stops it, which damps the robot, and takes the unit away. log and status show what systemd knows of it. Root
-installs units of the machine, everybody else with --user their own, which last while they are logged in. It is
-never restarted by itself: a run that has ended has damped the robot, and a person is to look first.
+`systemctl stop` has the robot sit down before the run ends; so does remove, which takes the unit away. log and
+status show what systemd knows of it. Root installs units of the machine, which run under the name of who called
+sudo; everybody else with --user their own, which last while they are logged in. It is never restarted by itself: a
+run that has ended has damped the robot, and a person is to look first.
 
 exit code: 0 done; 2 the call was wrong or there is no systemd; log and status: that of journalctl and systemctl
 """
@@ -50,7 +51,8 @@ def _run(call: argparse.Namespace) -> int:
     from surefoot.tools.service.unit import Service
 
     config = deployment_file(call.config)
-    service = Service(config, Path(sys.executable), Path.cwd(), call.user, call.cpus)
+    account = "" if call.user else os.environ.get("SUDO_USER", "")
+    service = Service(config, Path(sys.executable), Path.cwd(), call.user, call.cpus, account)
     folder = systemd.folder_of(call.user)
     try:
         systemd.check_systemd()
@@ -65,7 +67,7 @@ def _run(call: argparse.Namespace) -> int:
             words = ["--follow"] if call.follow else ["--no-pager", "--lines=200"]
             return systemd.show(service, "journalctl", "--unit", service.name, *words)
         else:
-            return systemd.show(service, "systemctl", "--no-pager", "status", service.name)
+            return systemd.show(service, "systemctl", "--no-pager", "--lines=40", "status", service.name)
     except systemd.ServiceError as error:
         raise CallError(str(error)) from None
     return 0

@@ -9,7 +9,7 @@ import shutil
 import sys
 import time
 from collections.abc import Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 from importlib import metadata
 from math import inf
@@ -17,7 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
-from surefoot.bus.topics import CYCLE_HZ
+from surefoot.bus.topics import CYCLE_HZ, PROCESSES
+from surefoot.components.real_time import preferred
+from surefoot.components.registry import component_class
 from surefoot.config.deployment import Deployment, Run
 from surefoot.config.doctor import Doctor
 from surefoot.hw.aliengo.deadlines import Deadlines
@@ -45,6 +47,7 @@ class Machine:
         governors: of the cores' clocks; empty: not told.
         free_bytes: where logs go.
         versions: of each library: its name, the version there is or "", the one that is wanted.
+        broken: why processes that are to run here cannot be loaded, in words.
     """
 
     rt_priority: int
@@ -57,6 +60,7 @@ class Machine:
     governors: frozenset[str]
     free_bytes: int
     versions: tuple[tuple[str, str, str], ...]
+    broken: tuple[str, ...] = ()
 
 
 def check_machine(machine: Machine, run: Run, limits: Doctor) -> list[Finding]:
@@ -73,7 +77,7 @@ def check_machine(machine: Machine, run: Run, limits: Doctor) -> list[Finding]:
         check_load(machine, limits),
         check_governor(machine),
         check_disk(machine, run, limits),
-        check_versions(machine.versions),
+        check_versions(machine.versions, machine.broken),
     ]
 
 
@@ -158,9 +162,12 @@ def check_disk(machine: Machine, run: Run, limits: Doctor) -> Finding:
     return graded("disk", -free, (-limits.free_warn_gb, -limits.free_fail_gb), words)
 
 
-def check_versions(versions: Sequence[tuple[str, str, str]]) -> Finding:
-    """Libraries are those that the project was tested with."""
+def check_versions(versions: Sequence[tuple[str, str, str]], broken: Sequence[str] = ()) -> Finding:
+    """Libraries are those that the project was tested with, and can be loaded."""
     check, python = "libraries", f"Python {sys.version.split()[0]}"
+    if broken:
+        remedy = "a lib....so is a package of the system, such as libgomp1 (Debian), else `pip install -e .`"
+        return Finding(check, Level.FAIL, "; ".join(broken), "every process can be loaded", remedy)
     if not versions:
         return Finding(check, Level.WARN, python, "surefoot installed", "install it: `pip install -e .`")
     odd = [f"{name} {there or 'missing'}, not {wanted}" for name, there, wanted in versions if there != wanted]
@@ -172,32 +179,37 @@ def check_versions(versions: Sequence[tuple[str, str, str]]) -> Finding:
 
 
 def look_at_machine(deployment: Deployment) -> Machine:
-    """Of this machine as it is now; watches its timer for `doctor.watch_s`."""
+    """Of this machine as it is now; watches its timer for `doctor.watch_s`, at the priority that io asks for."""
+    run = deployment.run
+    priority = run.realtime_priority + PROCESSES["io"].urgency if run.clock == "monotonic" else 0
     soft, hard = resource.getrlimit(resource.RLIMIT_MEMLOCK)
     return Machine(
         rt_priority=max(resource.getrlimit(resource.RLIMIT_RTPRIO)),
         may_nice=_has_capability(_CAP_SYS_NICE),
         memory_lock=inf if resource.RLIM_INFINITY in (soft, hard) else max(soft, hard),
         resolution_s=time.get_clock_info("monotonic").resolution,
-        lateness_s=timer_lateness(deployment.doctor.watch_s),
+        lateness_s=timer_lateness(deployment.doctor.watch_s, priority),
         cores=len(os.sched_getaffinity(0)),
         load=os.getloadavg()[0],
         governors=frozenset(
             path.read_text().strip() for path in _GOVERNORS.glob("cpu[0-9]*/cpufreq/scaling_governor")
         ),
-        free_bytes=shutil.disk_usage(_existing(Path(deployment.run.log_dir))).free,
+        free_bytes=shutil.disk_usage(_existing(Path(run.log_dir))).free,
         versions=_versions(),
+        broken=_broken(deployment.network.components_here),
     )
 
 
-def timer_lateness(seconds: float) -> np.ndarray:
-    """How late this process woke in each cycle of a 500 Hz timer [s]."""
-    begin = time.monotonic()
-    deadlines, late = Deadlines(1.0 / CYCLE_HZ, begin), []
-    while (now := time.monotonic()) < begin + seconds:
-        deadline, _ = deadlines.following(now)
-        time.sleep(max(deadline - now, 0.0))
-        late.append(time.monotonic() - deadline)
+def timer_lateness(seconds: float, priority: int = 0) -> np.ndarray:
+    """How late this thread woke in each cycle of a 500 Hz timer [s]; with real-time priority where it may."""
+    late: list[float] = []
+    with preferred(priority) if priority else nullcontext():
+        begin = time.monotonic()
+        deadlines = Deadlines(1.0 / CYCLE_HZ, begin)
+        while (now := time.monotonic()) < begin + seconds:
+            deadline, _ = deadlines.following(now)
+            time.sleep(max(deadline - now, 0.0))
+            late.append(time.monotonic() - deadline)
     return np.array(late)
 
 
@@ -223,6 +235,17 @@ def _versions() -> tuple[tuple[str, str, str], ...]:
             if pinned:
                 found.append((pinned[1], _version(pinned[1]), pinned[2]))
     return tuple(found)
+
+
+def _broken(processes: Sequence[str]) -> tuple[str, ...]:
+    """One of several reasons that are alike is enough."""
+    found: dict[str, str] = {}
+    for name in processes:
+        try:
+            component_class(name)
+        except ImportError as error:
+            found.setdefault(str(error), name)
+    return tuple(f"{name}: {why}" for why, name in found.items())
 
 
 def _version(name: str) -> str:

@@ -40,7 +40,7 @@ def check_service(service: Service, deployment: Deployment) -> None:
 
     Raises:
         ConfigError: the robot would set off by itself.
-        ServiceError: `cpus` is no list of cores, or a path has a line break in it.
+        ServiceError: `cpus` is no list of this machine's cores, or a path has a line break in it.
     """
     if deployment.hw.backend == "aliengo" and deployment.run.command:
         raise ConfigError(
@@ -49,6 +49,8 @@ def check_service(service: Service, deployment: Deployment) -> None:
         )
     if service.cpus and not _CPUS.fullmatch(service.cpus):
         raise ServiceError(f"--cpus {service.cpus!r}: a list of cores such as 2-5 or 2,3")
+    if any(int(core) >= (os.cpu_count() or 1) for core in re.findall(r"\d+", service.cpus)):
+        raise ServiceError(f"--cpus {service.cpus}: this machine has cores 0 to {(os.cpu_count() or 1) - 1}")
     if "\n" in f"{service.config}{service.folder}{service.python}":
         raise ServiceError("a path with a line break cannot stand in a unit: rename the folder")
 
@@ -66,7 +68,7 @@ def install(service: Service, at_boot: bool, folder: Path) -> Path:
 
     Args:
         service: what is to run.
-        at_boot: it is also started with the machine.
+        at_boot: it is also started with the machine; if not, no longer.
         folder: of units.
 
     Raises:
@@ -79,13 +81,12 @@ def install(service: Service, at_boot: bool, folder: Path) -> Path:
     except OSError as error:
         raise ServiceError(f"{path}: {error.strerror}; use sudo, or --user for a unit of your own") from None
     _control(service.user, "daemon-reload")
-    if at_boot:
-        _control(service.user, "enable", service.name)
+    _control(service.user, "enable" if at_boot else "disable", service.name)
     return path
 
 
 def remove(service: Service, folder: Path) -> Path:
-    """Stop it, which damps the robot, and take the unit away.
+    """Stop it, which has the robot sit down first, and take the unit away.
 
     Raises:
         ServiceError: there is no such unit, or it may not be removed.

@@ -1,5 +1,6 @@
 """This machine, made up; and the one the test runs on, which is only looked at."""
 
+import sys
 from dataclasses import replace
 from math import inf
 
@@ -50,6 +51,7 @@ def test_a_machine_in_order_is_well():
         ({"versions": (("numpy", "1.0", "2.4.6"),)}, "libraries", Level.WARN, "numpy 1.0, not 2.4.6"),
         ({"versions": (("numpy", "", "2.4.6"),)}, "libraries", Level.FAIL, "numpy missing"),
         ({"versions": ()}, "libraries", Level.WARN, "Python 3"),
+        ({"broken": ("wbc: libgomp.so.1: no such file",)}, "libraries", Level.FAIL, "wbc: libgomp.so.1"),
     ],
 )
 def test_what_is_amiss_is_told_with_what_to_do(change, check, level, words):
@@ -71,3 +73,12 @@ def test_this_machine_can_be_looked_at():
     seen = look_at_machine(Deployment(doctor=Doctor(watch_s=0.2)))
     assert seen.cores >= 1 and seen.free_bytes > 0 and (seen.lateness_s >= 0.0).all()
     assert {name: there for name, there, _ in seen.versions}["numpy"] == np.__version__
+    assert seen.broken == ()
+
+
+def test_a_library_that_cannot_be_loaded_is_named_once(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pinocchio", None)
+    for module in [name for name in sys.modules if name.startswith("surefoot.components.")]:
+        monkeypatch.delitem(sys.modules, module)
+    (why,) = look_at_machine(Deployment(doctor=Doctor(watch_s=0.2))).broken
+    assert "pinocchio" in why

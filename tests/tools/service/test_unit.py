@@ -7,10 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from surefoot.bus.topics import PROCESSES
 from surefoot.config.deployment import load_deployment
+from surefoot.config.operator import Operator
 from surefoot.config.typed_toml import ConfigError
 from surefoot.tools.cli import main
 from surefoot.tools.commands.call import deployment_file
+from surefoot.tools.launcher import KILL_AFTER_S
 from surefoot.tools.service.systemd import ServiceError, check_service, check_systemd, folder_of
 from surefoot.tools.service.unit import Service
 
@@ -36,7 +39,7 @@ def test_it_runs_this_environments_interpreter_by_absolute_paths():
 def test_it_may_run_in_real_time_and_is_never_restarted_by_itself():
     said = lines(service(cpus="2-5").text())
     assert said["LimitRTPRIO"] == "80" and said["LimitMEMLOCK"] == "infinity" and said["CPUAffinity"] == "2-5"
-    assert said["Restart"] == "no" and said["KillMode"] == "mixed"
+    assert said["Restart"] == "no"
     assert "CPUAffinity" not in service().text()
 
 
@@ -68,7 +71,20 @@ def test_a_robot_that_would_get_up_by_itself_is_refused():
         check_service(service(), load_deployment(ALIENGO, ["run.command=stand"]))
 
 
-@pytest.mark.parametrize("settings", [{"cpus": "all"}, {"cpus": "2-"}, {"folder": Path("/a\nb")}])
+def test_the_supervisor_alone_is_told_to_stop_and_has_the_time_that_the_robot_may_take():
+    said = lines(service().text())
+    assert said["KillMode"] == "process" and said["OOMPolicy"] == "continue"
+    longest_s = Operator(settle_s=120.0).settle_s + (len(PROCESSES) + 1) * KILL_AFTER_S
+    assert float(said["TimeoutStopSec"]) > longest_s
+
+
+def test_it_runs_under_the_name_of_who_called_sudo():
+    assert lines(service(account="dog").text())["User"] == "dog" and "User" not in lines(service().text())
+
+
+@pytest.mark.parametrize(
+    "settings", [{"cpus": "all"}, {"cpus": "2-"}, {"cpus": "0-4096"}, {"folder": Path("/a\nb")}]
+)
 def test_what_cannot_stand_in_a_unit_is_refused(settings):
     with pytest.raises(ServiceError):
         check_service(service(**settings), load_deployment(ALIENGO))
