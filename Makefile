@@ -4,6 +4,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 CONFIG ?= config/planks.toml
+JOBS   ?= 2
 
 # One BLAS thread a process: seven processes share the cores.
 export OMP_NUM_THREADS = 1
@@ -18,7 +19,7 @@ run: $(STAMP)
 	$(BIN)/surefoot run $(CONFIG)
 
 test: $(STAMP)
-	$(BIN)/python -P -m pytest
+	$(BIN)/python -P -m pytest --numprocesses $(JOBS) --dist loadfile
 
 bench: $(STAMP)
 	$(BIN)/surefoot bench
