@@ -25,7 +25,7 @@ RATE_HZ = 20.0
 
 _FRAME = "world"
 _ARROW_M_PER_N, _LEAST_N = 0.003, 5.0
-_MARK_M, _THICKNESS_M = 0.05, 0.02
+_MARK_M, _THICKNESS_M = 0.1, 0.02  # a mark is to be seen around the foot that stands on it
 _BODY, _LEG, _FOOT = "#40454d", "#d9732b", "#1d2126"
 _CARRIES, _TURN = "#1f5fbf", "#e8850c"
 _EMPTY = ("arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "texts", "models", "metadata")
@@ -49,11 +49,12 @@ def scene_updates(recording: RecordingTables, begin_s: float, end_s: float) -> I
         NotRecorded: there is neither in that time.
     """
     robot = recording.deployment.load_robot()
-    legs = LegKinematics(robot)
+    legs, under = LegKinematics(robot), np.array([0.0, 0.0, robot.foot.radius])
     for instant in Scenes(recording, frame_times(begin_s, end_s, RATE_HZ, 1.0)):
         t_ns = round(1e9 * instant.t)
         entities = [_entity("robot", t_ns, **_robot(instant, robot, legs))]
-        entities.append(_entity("verdicts", t_ns, cylinders=[_mark(*each) for each in instant.verdicts]))
+        marks = [_mark(p_WF - under, verdict) for p_WF, verdict in instant.verdicts]
+        entities.append(_entity("verdicts", t_ns, cylinders=marks))
         yield t_ns, json.dumps({"deletions": [], "entities": entities}, allow_nan=False).encode()
 
 
