@@ -19,7 +19,7 @@ run: $(STAMP)
 	$(BIN)/surefoot run $(CONFIG)
 
 test: $(STAMP)
-	$(BIN)/python -P -m pytest --numprocesses $(JOBS) --dist loadfile
+	$(BIN)/python -P -m pytest --numprocesses $(JOBS) --dist loadfile --no-loadscope-reorder
 
 bench: $(STAMP)
 	$(BIN)/surefoot bench
