@@ -36,7 +36,8 @@ class Parting:
         self._settle_s = deployment.operator.settle_s if at_hub else 0.0
         lowered_s = TOPICS["fsm/reference"].stale_after_s + wbc.hold_s + wbc.lower_m / wbc.lower_speed
         self._alone_s = min(lowered_s + _MORE_S, self._settle_s)
-        self._catches = at_hub and (run.clock != "simulated" or deployment.hw.backend == "aliengo")
+        self._simulated = run.clock == "simulated"
+        self._catches = at_hub and (not self._simulated or deployment.hw.backend == "aliengo")
         self._until: float | None = None
         self._why = ""
 
@@ -68,11 +69,16 @@ class Parting:
         if self._settled:
             return what
         if self._until is None:
-            self._until = time.monotonic() + seconds
+            self._until = self._now + seconds
             self._note(f"{what}; the robot sits down before the run ends")
             if reason:
                 self._command(f"sit: {reason}")
-        return what if time.monotonic() >= self._until else ""
+        return what if self._now >= self._until else ""
+
+    @property
+    def _now(self) -> float:
+        """On the clock that the robot sits down by [s]."""
+        return self._picture.t if self._simulated else time.monotonic()
 
     @property
     def _settled(self) -> bool:

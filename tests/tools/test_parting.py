@@ -73,6 +73,15 @@ def test_a_run_that_is_to_end_has_the_robot_sit_down_once_and_ends_for_its_first
     assert run.parting.end("") == "goal reached" and not run.parting.settles
 
 
+def test_where_time_is_simulated_the_robot_has_its_seconds_of_that():
+    run = Probing(clock="simulated", backend="aliengo", settle_s=2.0)
+    assert run.parting.end("goal reached") == ""
+    run.picture.reference = MotionReference(state="PROBE", t=1.9)
+    assert run.parting.end("") == ""
+    run.picture.reference = MotionReference(state="PROBE", t=2.1)
+    assert run.parting.end("") == "goal reached"
+
+
 def test_a_process_that_is_lost_meanwhile_changes_nothing_if_the_robot_can_sit_without_it():
     run = Probing()
     assert run.parting.end("goal reached") == "" and run.lost("mpc") == "" and len(run.commands) == 1

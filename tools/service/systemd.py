@@ -49,8 +49,10 @@ def check_service(service: Service, deployment: Deployment) -> None:
         )
     if service.cpus and not _CPUS.fullmatch(service.cpus):
         raise ServiceError(f"--cpus {service.cpus!r}: a list of cores such as 2-5 or 2,3")
-    if any(int(core) >= (os.cpu_count() or 1) for core in re.findall(r"\d+", service.cpus)):
-        raise ServiceError(f"--cpus {service.cpus}: this machine has cores 0 to {(os.cpu_count() or 1) - 1}")
+    cores = os.cpu_count() or 1
+    for first, last in re.findall(r"(\d+)-?(\d*)", service.cpus):
+        if not int(first) <= int(last or first) < cores:
+            raise ServiceError(f"--cpus {service.cpus}: this machine has cores 0 to {cores - 1}")
     if "\n" in f"{service.config}{service.folder}{service.python}":
         raise ServiceError("a path with a line break cannot stand in a unit: rename the folder")
 

@@ -83,7 +83,7 @@ def test_it_runs_under_the_name_of_who_called_sudo():
 
 
 @pytest.mark.parametrize(
-    "settings", [{"cpus": "all"}, {"cpus": "2-"}, {"cpus": "0-4096"}, {"folder": Path("/a\nb")}]
+    "settings", [{"cpus": "all"}, {"cpus": "2-"}, {"cpus": "1-0"}, {"cpus": "0-4096"}, {"folder": Path("/a\nb")}]
 )
 def test_what_cannot_stand_in_a_unit_is_refused(settings):
     with pytest.raises(ServiceError):
