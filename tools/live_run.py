@@ -170,7 +170,7 @@ def _supervised(
             reason = supervisor.run(until, StatusLines(console))
     except KeyboardInterrupt:
         reason = ENDED_BY_USER
-    if reason in (ENDED_BY_USER, ENDED_BY_COMMAND):
+    if reason in (ENDED_BY_USER, ENDED_BY_COMMAND) and not state.over:
         state = Verdict(reason, over=True, good=True)
     return reason, state
 

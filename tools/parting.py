@@ -43,8 +43,8 @@ class Parting:
 
     @property
     def settles(self) -> bool:
-        """Whether a run that is to end now has the robot sit down first."""
-        return self._catches and not self._settled
+        """Whether a run that is to end now has the robot sit down first, which it does not do already."""
+        return self._catches and not self._why and self._until is None and not self._settled
 
     def end(self, why: str) -> str:
         """Called in every look with why the run is to end, if it is: the first such reason, once the robot rests.

@@ -68,7 +68,7 @@ def test_a_run_that_is_to_end_has_the_robot_sit_down_once_and_ends_for_its_first
     run = Probing(clock=clock, backend=backend)
     assert run.parting.end("") == "" and run.commands == [] and run.parting.settles
     assert [run.parting.end(why) for why in ("goal reached", "", "ended by the user")] == ["", "", ""]
-    assert run.commands == ["sit: the run is to end"] and len(run.notes) == 1
+    assert run.commands == ["sit: the run is to end"] and len(run.notes) == 1 and not run.parting.settles
     run.picture.reference = MotionReference(state="DAMP")
     assert run.parting.end("") == "goal reached" and not run.parting.settles
 
