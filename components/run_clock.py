@@ -28,7 +28,8 @@ class AnotherRun(BusError):
 class HubClock:
     """The run's time by io's clock, from another machine.
 
-    Between two answers it goes on by this machine's clock, also while the link is down, and it never goes back.
+    Between two answers it goes on by this machine's clock, at the run's speed, also while the link is down, and it
+    never goes back.
     It may be behind io's by as much as an answer took, and is never ahead: a message from the future would count
     as fresh for too long.
 
@@ -36,15 +37,18 @@ class HubClock:
         behind_s: how far it may be behind, at the last answer used.
     """
 
-    def __init__(self, session: Session, ended: Callable[[], bool], drop: Callable[[str], None]):
+    def __init__(
+        self, session: Session, ended: Callable[[], bool], drop: Callable[[str], None], speed: float = 1.0
+    ):
         """Ask until there is an answer, or `ended()`; then again every few seconds.
 
         Args:
             session: the bus.
             ended: whether the process is to end.
             drop: told of an answer that cannot be read, and of a question that failed; it is asked again.
+            speed: of the run, `run.speed`.
         """
-        self._session, self._ended, self._drop = session, ended, drop
+        self._session, self._ended, self._drop, self._speed = session, ended, drop, speed
         self._run: float | None = None
         self._offset = self._measured = self._last = 0.0
         self.behind_s = float("inf")
@@ -63,7 +67,7 @@ class HubClock:
             raise AnotherRun(
                 "the run has ended, and io's machine has begun another: start this machine's part again"
             )
-        self._last = max(self._last, time.monotonic() + self._offset)
+        self._last = max(self._last, time.monotonic() * self._speed + self._offset)
         return self._last
 
     def ask(self) -> bool:
@@ -85,7 +89,7 @@ class HubClock:
             self._run, heard = run, True
             behind = ended - begun
             if behind < self.behind_s + _DRIFT * (begun - self._measured):
-                self._offset, self._measured, self.behind_s = t - ended, ended, behind
+                self._offset, self._measured, self.behind_s = t - ended * self._speed, ended, behind
         return heard
 
     def _follow(self) -> None:
@@ -98,8 +102,8 @@ class HubClock:
 
 def serve_time(session: Session, deployment: Deployment) -> None:
     """Tell the run's time to other machines; by the process of io."""
-    epoch = deployment.run.epoch_s
-    session.serve(NOW, lambda: [msgpack.packb([epoch, time.monotonic() - epoch])])
+    epoch, now = deployment.run.epoch_s, _own_clock(deployment)
+    session.serve(NOW, lambda: [msgpack.packb([epoch, now()])])
 
 
 def run_clock(
@@ -107,9 +111,14 @@ def run_clock(
 ) -> Callable[[], float]:
     """The run's time [s] on the monotonic clock, in this process; `ended` and `drop` as of `HubClock`."""
     if deployment.run.clock == "monotonic" and not deployment.network.at_hub:
-        return HubClock(session, ended, drop)
-    epoch = deployment.run.epoch_s
-    return lambda: time.monotonic() - epoch
+        return HubClock(session, ended, drop, deployment.run.speed)
+    return _own_clock(deployment)
+
+
+def _own_clock(deployment: Deployment) -> Callable[[], float]:
+    """The run's time [s] on the machine of io."""
+    epoch, speed = deployment.run.epoch_s, deployment.run.speed
+    return lambda: (time.monotonic() - epoch) * speed
 
 
 def _unpack(payload: bytes) -> tuple[float, float]:

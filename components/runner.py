@@ -49,7 +49,7 @@ class Runner:
         self._end = ProcessEnd(parent)
         self._deployment, self._name, self._boot = deployment, name, boot
         self._process = processes(deployment.mpc.profile)[name]
-        self._monotonic = deployment.run.clock == "monotonic"
+        self._monotonic, self._speed = deployment.run.clock == "monotonic", deployment.run.speed
         self._session = Session(deployment.run.namespace, hub=self.hub, network=deployment.network)
         component = component_class(name)(deployment)
         self._stepper = Stepper(component, self._session, self._process, boot, simulated=not self._monotonic)
@@ -121,7 +121,7 @@ class Runner:
         """Take the place of the process that runs under this name, which then ends."""
         self._relief.listen()
         self._stepper.rehearse(self._relief.ask(SHOW))
-        time.sleep(self._stepper.take_over(self._relief.ask(GIVE), self._live_t()))
+        time.sleep(self._stepper.take_over(self._relief.ask(GIVE), self._live_t()) / self._speed)
 
     def _answer_successor(self) -> None:
         """Show where this process stands to one that asks, or leave it its place for good."""
@@ -204,7 +204,7 @@ class Runner:
 
     def _follow_timer(self) -> None:
         """Absolute deadlines on the monotonic clock; after an overrun the missed ones are skipped and counted."""
-        period = 1.0 / self._process.rate_hz
+        period = 1.0 / (self._process.rate_hz * self._speed)
         deadline = time.monotonic()
         while self._goes_on:
             deadline += period

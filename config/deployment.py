@@ -33,6 +33,7 @@ class Run:
     """How the processes run together."""
 
     clock: Literal["simulated", "monotonic"] = "simulated"  # it waits for every process, or for none
+    speed: Annotated[float, Within(0.02, 1.0)] = 1.0  # of a simulated robot on the monotonic clock, against it
     command: str = "forward"  # given by the operator's side once the robot stands; "" waits for one
     vision: bool = False  # a depth camera, a map from it and footholds adapted to it; false: blind
     namespace: str = "surefoot"  # prefix of every key on the wire
@@ -89,7 +90,13 @@ class Deployment:
         return load_unit(self.hw.unit, self.robot) if self.hw.unit else None
 
     def _check_backend(self) -> None:
-        """A real robot does not wait, and has no camera on its link."""
+        """A real robot does not wait, nor does it go slower, and has no camera on its link."""
+        if self.run.speed != 1.0 and (self.run.clock == "simulated" or self.hw.backend == "aliengo"):
+            raise ConfigError(
+                f"run.speed = {self.run.speed:g} with run.clock = {self.run.clock!r} and hw.backend = "
+                f"{self.hw.backend!r}: only MuJoCo's robot on the monotonic clock can go slower than time does; "
+                "set run.speed = 1"
+            )
         if self.hw.backend != "aliengo":
             return
         fitting = {"timer": "monotonic", "cycle": "simulated"}

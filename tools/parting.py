@@ -36,7 +36,7 @@ class Parting:
         self._settle_s = deployment.operator.settle_s if at_hub else 0.0
         lowered_s = TOPICS["fsm/reference"].stale_after_s + wbc.hold_s + wbc.lower_m / wbc.lower_speed
         self._alone_s = min(lowered_s + _MORE_S, self._settle_s)
-        self._simulated = run.clock == "simulated"
+        self._simulated, self._speed = run.clock == "simulated", run.speed
         self._catches = at_hub and (not self._simulated or deployment.hw.backend == "aliengo")
         self._until: float | None = None
         self._why = ""
@@ -78,7 +78,7 @@ class Parting:
     @property
     def _now(self) -> float:
         """On the clock that the robot sits down by [s]."""
-        return self._picture.t if self._simulated else time.monotonic()
+        return self._picture.t if self._simulated else time.monotonic() * self._speed
 
     @property
     def _settled(self) -> bool:

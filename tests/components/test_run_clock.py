@@ -19,9 +19,9 @@ from surefoot.config.deployment import Deployment, Run
 NAMESPACE = f"clock-{os.getpid()}"
 
 
-def deployment(age_s):
+def deployment(age_s, speed=1.0):
     """A run that began so long ago."""
-    return replace(Deployment(), run=Run(clock="monotonic", epoch_s=time.monotonic() - age_s))
+    return replace(Deployment(), run=Run(clock="monotonic", speed=speed, epoch_s=time.monotonic() - age_s))
 
 
 @pytest.fixture
@@ -56,6 +56,18 @@ def test_it_is_behind_by_no_more_than_an_answer_took_and_never_ahead(hub, client
         after = time.monotonic() - run.run.epoch_s
         assert before - clock.behind_s - 1e-6 <= t <= after
         clock.ask()
+
+
+def test_a_run_that_goes_slower_than_time_does_so_on_every_machine(hub, client):
+    run = deployment(100.0, speed=0.25)
+    serve_time(hub, run)
+    there = HubClock(client, lambda: True, pytest.fail, run.run.speed)
+    here = run_clock.run_clock(client, run, lambda: True, pytest.fail)
+    for _ in range(3):
+        t = there()
+        assert t <= here() < t + there.behind_s + 0.1
+        time.sleep(0.2)
+    assert 25.0 < here() < 0.25 * (time.monotonic() - run.run.epoch_s) + 1e-9
 
 
 def test_it_goes_on_without_answers_and_never_back(hub, client, monkeypatch, clock_of):

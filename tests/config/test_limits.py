@@ -166,6 +166,7 @@ OUTSIDE = {
     "elevation_map.takeover_frames=0": "1 to 100",
     "elevation_map.publish_s=0": "0.05 to 60",
     "run.epoch_s=-1": "0 to 1e+10",
+    "run.speed=0": "0.02 to 1",
     "elevation_map.vfa.age_max_s=0": "1 to 100000",
     "elevation_map.vfa.std_max_m=0": "0.001 to 0.5",
     "elevation_map.vfa.disc_gaps_max=0.6": "0 to 0.5",
@@ -278,6 +279,8 @@ TOGETHER = {
     "hw.backend=aliengo run.clock=monotonic hw.aliengo.exchange=cycle hw.aliengo.address=127.0.0.1": (
         r"^run\.clock = 'monotonic' with hw\.aliengo\.exchange = 'cycle': .* 'simulated' and 'cycle'"
     ),
+    "run.speed=0.5": r"^run\.speed = 0\.5 with run\.clock = 'simulated' .* set run\.speed = 1",
+    "hw.backend=aliengo run.clock=monotonic run.speed=0.5": r"^run\.speed .* 'aliengo': .* set run\.speed = 1",
     "hw.backend=aliengo run.clock=monotonic run.vision=true": r"^run\.vision = true .* set run\.vision = false",
     "hw.aliengo.exchange=cycle": r"^hw\.aliengo: exchange = 'cycle' with address = '192\.168\.123\.10': .*'timer'",
     "emulator.motors.cooled=95": r"^emulator\.motors: cooled = 95\.0 is above overheated = 90\.0",

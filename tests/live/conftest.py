@@ -244,14 +244,9 @@ class Supervised(Ear):
 
 
 class Link:
-    """Two network namespaces with one cable between them: two machines, as far as the network goes.
-
-    Attributes:
-        priority: words before each command: a test in real time wants its own of a busy machine.
-    """
+    """Two network namespaces with one cable between them: two machines, as far as the network goes."""
 
     def __init__(self):
-        self.priority: tuple[str, ...] = ()
         mark = os.getpid()
         self.names = {"robot": f"sf-robot-{mark}", "laptop": f"sf-laptop-{mark}"}
         self._devices = {"robot": f"sfr{mark}", "laptop": f"sfl{mark}"}
@@ -272,7 +267,7 @@ class Link:
 
     def command(self, machine, *words):
         """A command as it is run on a machine."""
-        return ["ip", "netns", "exec", self.names[machine], *self.priority, *words]
+        return ["ip", "netns", "exec", self.names[machine], *words]
 
     def on(self, machine, *words):
         """Run a command on a machine."""

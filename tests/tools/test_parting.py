@@ -16,12 +16,12 @@ WHAT = "it ended with signal 9"
 class Probing:
     """A robot that probes."""
 
-    def __init__(self, settle_s=60.0, clock="monotonic", backend="mujoco"):
+    def __init__(self, settle_s=60.0, clock="monotonic", backend="mujoco", speed=1.0):
         self.picture = Picture(reference=MotionReference(state="PROBE"), hardware=HardwareState())
         self.commands, self.notes = [], []
         wire = Aliengo(address="127.0.0.1", exchange="cycle" if backend == "aliengo" else "timer")
         hw, operator = Hw(backend=backend, aliengo=wire), Operator(settle_s=settle_s)
-        deployment = Deployment(run=Run(clock=clock), hw=hw, operator=operator)
+        deployment = Deployment(run=Run(clock=clock, speed=speed), hw=hw, operator=operator)
         self.parting = Parting(deployment, self.picture, self.commands.append, self.notes.append)
 
     def lost(self, name):
@@ -91,3 +91,14 @@ def test_a_process_that_is_lost_meanwhile_changes_nothing_if_the_robot_can_sit_w
 def test_a_simulated_robot_on_simulated_time_is_not_waited_for():
     run = Probing(clock="simulated")
     assert run.parting.end("goal reached") == "goal reached" and run.commands == [] and not run.parting.settles
+
+
+def test_where_time_goes_slower_the_robot_is_waited_for_longer(monkeypatch):
+    now = 100.0
+    monkeypatch.setattr("surefoot.tools.parting.time.monotonic", lambda: now)
+    run = Probing(settle_s=2.0, speed=0.25)
+    assert run.lost("mpc") == ""
+    now += 7.9
+    assert run.lost("mpc") == ""
+    now += 0.2
+    assert run.lost("mpc") == WHAT

@@ -19,10 +19,10 @@ from surefoot.tools.faults.case import Case, Result
 from surefoot.tools.faults.observed_run import ObservedRun, RunOver
 from surefoot.tools.faults.reference_run import first_difference
 
-PAUSE_S = 1.0
+PAUSE_S = 1.0  # of the run's time
 _GO_ON_S = 0.06
-_SETTLE_S = 4.0
-_END_S = 12.0  # the robot sits down before the run ends
+_SETTLE_S = 4.0  # of the run's time
+_END_S = 12.0  # likewise: the robot sits down before the run ends
 _STANDS_M = 0.30  # height of the trunk that no robot has that lies
 _TILT = 0.5  # more than the state machine lets pass for standing or lying [rad]
 _SAID = {"kill": "{} ended with", "restart": "restart", "pause": "simulated time waits"}
@@ -124,6 +124,7 @@ class Drill:
         """One run for one case; how long until the robot is in its safe state, by the run's own clock."""
         command = "stand" if case.phase == "standing" else "forward"
         run = self._run("run.clock=monotonic", "mpc.profile=light", f'run.command="{command}"')
+        speed = run.deployment.run.speed
         try:
             run.wait(lambda: len(run.status) == len(PROCESSES) and run.phase == case.phase, case.phase)
             if case.phase == "standing":
@@ -132,13 +133,13 @@ class Drill:
             t, mark, name, truths = run.t, run.mark(), case.process, len(run.heard["sim/truth"])
             if case.fault == "pause":
                 run.signal(name, signal.SIGSTOP)
-                time.sleep(PAUSE_S)
+                time.sleep(PAUSE_S / speed)
                 run.signal(name, signal.SIGCONT)
             elif case.fault == "kill":
                 run.signal(name, signal.SIGKILL)
             else:
                 run.restart(name)
-            end = time.monotonic() + (_END_S if case.fault == "kill" else _SETTLE_S)
+            end = time.monotonic() + (_END_S if case.fault == "kill" else _SETTLE_S) / speed
             while time.monotonic() < end and not run.over:
                 time.sleep(0.05)
             result = self._judge_monotonic(run, case, t, truths, mark)
