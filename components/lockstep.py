@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Callable, Iterable
-from time import perf_counter
 
 from surefoot.bus.codec import check, encode
 from surefoot.bus.message import Message
@@ -27,7 +25,6 @@ class LocalExecutor:
 
     Attributes:
         component, inbox, active: what is stepped, what it reads, and whether it steps already.
-        step_ms: wall time of every step.
         journal: what it reads and publishes is noted there, if one is given before the first step.
     """
 
@@ -35,7 +32,6 @@ class LocalExecutor:
         self.component = component
         self.inbox = Inbox(component.inputs)
         self.active = False
-        self.step_ms = array("f")  # six million in an hour
         self.journal: Journal | None = None
         self._t = 0.0
         self._bus = bus
@@ -49,12 +45,10 @@ class LocalExecutor:
         for key, count in self._read.items():
             self._read[key] = self._bus.deliver(key, count, self.inbox)
         t = t_ns / NS
-        start = perf_counter()
         if not self.active:
             self.active = self.component.activate(t, self.inbox)
         if self.active:
             self.component.step(t, self.inbox, self._outbox)
-        self.step_ms.append(1e3 * (perf_counter() - start))
         if self.journal is not None:
             self.journal.note_step(t, [self.inbox.new(key) for key in self.component.inputs])
         self._t = t

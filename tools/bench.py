@@ -25,6 +25,7 @@ from surefoot.hw.mujoco.backend import MujocoRobot
 from surefoot.hw.robot_interface import MotorLaw
 from surefoot.tools import wire_bench
 from surefoot.tools.bus_bench import bus_bench, rows
+from surefoot.tools.stopwatch import Stopwatch
 
 WARM_UP_S = 4.0
 """Simulated time until the robot stands and every component is at work."""
@@ -117,14 +118,13 @@ def _walk(witness: _Witness) -> dict:
     stack = Lockstep(Deployment())
     stack.command("forward")
     stack.run(WARM_UP_S)
-    skipped = {name: len(executor.step_ms) for name, executor in stack.executors.items()}
+    watches = {name: Stopwatch(component, "step") for name, component in stack.components.items()}
     stack.listen(witness)
     begun = perf_counter()
     stack.run(WARM_UP_S + WALK_S)
     wall = perf_counter() - begun
-    steps = {name: executor.step_ms[skipped[name] :] for name, executor in stack.executors.items()}
     return {
-        "step_ms": {name: _spread(times) for name, times in steps.items() if times},
+        "step_ms": {name: _spread(watch.ms) for name, watch in watches.items() if watch.ms},
         "mpc_stage_ms": {stage: _spread(times) for stage, times in witness.stages.items()},
         "real_time_factor": WALK_S / wall,
         "references": {"swing": int(witness.swinging), "probe": int(witness.probing)},

@@ -16,9 +16,9 @@ from surefoot.components.lockstep import Listener, Lockstep
 from surefoot.config.deployment import Deployment
 from surefoot.hw.mujoco.backend import MujocoRobot
 from surefoot.tools.evaluation.grader import Grader
-from surefoot.tools.evaluation.stopwatch import Stopwatch
 from surefoot.tools.evaluation.true_state import TrueState
 from surefoot.tools.recording.lockstep_recording import LockstepRecording
+from surefoot.tools.stopwatch import Stopwatch
 
 LIMIT_S = 1200.0
 """Simulated time after which a run is a failure."""
@@ -73,7 +73,8 @@ def _grade(
     io = cast(Io, stack.components["io"])  # what the registry has under this name
     robot = cast(MujocoRobot, io.robot)  # only what knows the truth can be graded: `evaluate` refuses others
     grader = Grader(deployment, robot.field)
-    physics = Stopwatch(robot)
+    watches = {name: Stopwatch(component, "step") for name, component in stack.components.items()}
+    watches["physics"] = Stopwatch(robot, "advance")
     stack.listen(grader)
     for listener in listeners:
         stack.listen(listener)
@@ -93,15 +94,12 @@ def _grade(
         recording.close()
     wall = perf_counter() - begun
     grader.outcome.finish(stack.t, limit_s)
-    step_ms = {name: executor.step_ms for name, executor in stack.executors.items()}
     return {
         "sim_time_s": stack.t,
         "wall_time_s": wall,
         "real_time_factor": stack.t / wall,
         **grader.results(),
-        "timing_ms": {
-            name: _percentiles(ms) for name, ms in (step_ms | {"physics": physics.step_ms}).items() if ms
-        },
+        "timing_ms": {name: _percentiles(watch.ms) for name, watch in watches.items() if watch.ms},
     }
 
 
