@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -80,6 +80,12 @@ class Message:
     seq: int = integer("counts the publisher's messages on this topic, from 0, never wraps")
     boot: int = integer("changes when the publisher restarts; consumers drop what they cached")
     valid: bool = flag("the publisher vouches for the content")
+
+    def numbered(self, seq: int, boot: int) -> Self:
+        """The same message under a number: as `dataclasses.replace`, at a tenth of what that costs."""
+        message = object.__new__(type(self))
+        vars(message).update(vars(self), seq=seq, boot=boot)
+        return message
 
 
 def specs(cls: type[Message]) -> dict[str, FieldSpec]:

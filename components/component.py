@@ -7,7 +7,6 @@ environment, file or global random state inside it: that is what makes a run rep
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from enum import Enum
 from typing import Any, ClassVar
 
@@ -107,7 +106,7 @@ class Outbox:
             raise KeyError(f"{key!r} is not an output; outputs are {', '.join(self._seq)}")
         if type(message) is not TOPICS[key].message:
             raise TypeError(f"{key} carries {TOPICS[key].message.__name__}, got {type(message).__name__}")
-        self._send(key, replace(message, seq=self._seq[key], boot=self._boot))
+        self._send(key, message.numbered(self._seq[key], self._boot))
         self._seq[key] += 1
 
 
