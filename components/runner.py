@@ -27,7 +27,7 @@ _LOOK_S = 0.2
 _LET_GO_S = 1.0  # shorter than the supervisor's patience
 _LEAVE_S = 0.1
 _GREET_S = 1.0  # without a release
-_HELD_UP_S = 0.03  # a process so late was stopped or starved, and so were its threads that bring the inputs
+_HELD_UP_S = 0.03  # of the run's time: a process so late was stopped or starved, and so were the threads that read
 _CATCH_UP_S = 0.02  # for those threads: what waits to be read would else count as stale
 
 
@@ -213,7 +213,7 @@ class Runner:
             missed = int(late / period)
             self._stepper.health.overruns += missed
             deadline += missed * period
-            if late > _HELD_UP_S and not self.hub:  # for io the robot waits
+            if late > _HELD_UP_S / self._speed and not self.hub:  # for io the robot waits
                 time.sleep(_CATCH_UP_S)
             self._live_step()
 

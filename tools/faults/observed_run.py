@@ -134,8 +134,17 @@ class ObservedRun:
             if self._popen.poll() is not None:
                 raise RunOver(self.ending())
             if time.monotonic() > end:
-                raise RunOver(f"{what or 'what was awaited'} did not come in {self._patience_s:.0f} s")
+                awaited = f"{what or 'what was awaited'} did not come in {self._patience_s:.0f} s"
+                raise RunOver(f"{awaited} ({self._why_not()})")
             time.sleep(_LOOK_S)
+
+    def _why_not(self) -> str:
+        """What the state machine and the processes say."""
+        references = self.heard["fsm/reference"]
+        said = [f"{self.last('fsm/reference').state} at {self.t:.1f} s"] if references else ["no state yet"]
+        said += [f"{name}: {status.reason}" for name, status in sorted(self.status.items()) if status.reason]
+        silent = [name for name in PROCESSES if name not in self.status]
+        return "; ".join(said + ([f"silent: {', '.join(silent)}"] if silent else []))
 
     def wait_end(self) -> float:
         """Until the run is over, by force if need be; how long that took [s]."""
