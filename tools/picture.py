@@ -116,6 +116,11 @@ class Picture:
         """Of all processes."""
         return sum(watched.restarts for watched in self.processes.values())
 
+    @property
+    def all_there(self) -> bool:
+        """Whether every process has spoken."""
+        return all(watched.status is not None for watched in self.processes.values())
+
     def note_event(self, event: FsmEvent) -> None:
         """Take in an event."""
         self.events.append(event)

@@ -115,8 +115,9 @@ class Supervisor:
                     self._start(self.picture.processes[name])
             while True:
                 self._look(each)
-                # In real time nobody keeps a command for one that does not listen yet.
-                if not self._simulated and first and self.picture.processes["fsm"].status is not None:
+                # In real time nobody waits: a robot that is to stand up before its controller is there is asked for
+                # the middle of that motion first, which the gate refuses.
+                if not self._simulated and first and self.picture.all_there:
                     self._desk.command(first)
                     first = ""
                 if reason := self._reconcile() or self._parting.end(until(self.picture) or self._asked):

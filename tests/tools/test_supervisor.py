@@ -372,7 +372,8 @@ def machine(tmp_path, monkeypatch):
         monkeypatch.setattr(supervisor, "_start", lambda watched: started.append(watched.name))
         monkeypatch.setattr(supervisor_desk, "Session", lambda *args, **kwargs: bus)
         monkeypatch.setattr(supervisor, "_await_io", lambda each: None)
-        supervisor.picture.processes["fsm"].status = ProcessStatus(process="fsm")
+        for name, watched in supervisor.picture.processes.items():
+            watched.status = ProcessStatus(process=name)
         return supervisor, started, bus
 
     return make
@@ -385,6 +386,22 @@ def test_a_machine_with_other_settings_than_ios_starts_nothing(machine):
     ):
         supervisor.run(lambda picture: "enough")
     assert started == []
+
+
+@pytest.mark.parametrize("late", ["fsm", "wbc", "mpc"])
+def test_in_real_time_the_first_command_waits_for_every_process(machine, late):
+    supervisor, _, bus = machine("robot", "monotonic")
+    process, looks = supervisor.picture.processes[late], iter(range(4))
+    process.status = None
+
+    def until(picture):
+        if next(looks) == 2:
+            assert bus.said == []
+            process.status = ProcessStatus(process=late)
+        return "enough" if bus.said else ""
+
+    assert supervisor.run(until) == "enough"
+    assert [payload for _, payload in bus.said] == [b"stand"]
 
 
 def test_a_robot_that_stands_on_its_own_time_sits_down_before_the_run_ends(machine):
