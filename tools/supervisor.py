@@ -115,7 +115,7 @@ class Supervisor:
                     self._start(self.picture.processes[name])
             while True:
                 self._look(each)
-                # In real time nobody waits: a robot that is to stand up before its controller is there is asked for
+                # In real time nobody waits: a robot told to stand before its controller is there would be asked for
                 # the middle of that motion first, which the gate refuses.
                 if not self._simulated and first and self.picture.all_there:
                     self._desk.command(first)

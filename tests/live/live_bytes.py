@@ -49,6 +49,7 @@ def first_difference(heard, expected):
 
 def assert_same_bytes(live):
     """What has been heard so far is what one process publishes, but for the last instants."""
+    live.stand_still()
     expected = local_bytes(live.deployment, live.t() - 0.05)
     live.wait(lambda: all(len(live.heard[key]) >= len(want) for key, want in expected.items()))  # on their way
     with live.lock:

@@ -40,5 +40,6 @@ def test_simulated_time_goes_on_without_a_reader_that_is_stopped_and_it_hears_ag
     live.go_on(3.0)  # far more than the queues to it hold
     reader.send_signal(signal.SIGCONT)
     assert reader.communicate("\n", timeout=60.0) == ("hears\n", None)
+    live.stand_still()
     assert_same_bytes_as_far_as_heard(live, live.t() - 0.5)
     assert not any(status.bad_messages for status in live.status.values())

@@ -15,7 +15,8 @@ UNTIL_S = 2.9  # plans a stride, shifts its base, lifts a foot off, touches down
 def test_over_the_bus_and_in_one_process_give_the_same_bytes(stack):
     live = stack(("run.vision=true",), leave_out=("trajopt",))
     live.begin(b"forward")
-    live.wait(lambda: live.t() >= UNTIL_S)
+    live.wait(lambda: live.t() >= UNTIL_S + 0.05)
+    live.stand_still()
     expected = local_bytes(live.deployment, UNTIL_S)
     other = local_bytes(replace(live.deployment, hw=replace(live.deployment.hw, seed=1)), 0.1)
     with live.lock:
@@ -41,6 +42,7 @@ def test_restarts_change_no_byte(stack):
         live.wait(lambda state=state: live.t() >= 0.5 and live.last("fsm/reference").state == state)
         live.restart(*(name for name in PROCESSES if name != "io"))
     live.go_on(0.3)
+    live.stand_still()
     end = live.t() - 0.1
     expected = local_bytes(live.deployment, end)
     with live.lock:

@@ -18,6 +18,7 @@ def test_a_change_and_restarts_after_it_give_the_bytes_of_one_process(stack):
     live.wait(lambda: len(live.heard["operator/tuning"]) == len(CHANGES))
     live.restart("fsm", "mpc", "wbc", "trajopt")
     live.wait(lambda: live.last("fsm/reference").state == "DETECT_CONTACT")
+    live.stand_still()
     end = live.t() - 0.1
     with live.lock:
         messages = [decode(Tuning, payload) for payload in live.heard["operator/tuning"]]
