@@ -115,8 +115,8 @@ class Supervisor:
                     self._start(self.picture.processes[name])
             while True:
                 self._look(each)
-                # In real time nobody waits: a robot told to stand before its controller is there would be asked for
-                # the middle of that motion first, which the gate refuses.
+                # In real time nobody waits: told to stand before its controller is there, a robot is asked for the
+                # middle of that motion first, which the gate refuses.
                 if not self._simulated and first and self.picture.all_there:
                     self._desk.command(first)
                     first = ""
