@@ -98,7 +98,7 @@ class Drill:
         if case.fault == "pause":
             run.signal(name, signal.SIGSTOP)
             time.sleep(PAUSE_S)
-            run.signal(name, signal.SIGCONT)
+            run.go_on(name)
             stood = f"paused {PAUSE_S:g} s"
         elif name == "io":
             run.restart(name)
@@ -134,7 +134,7 @@ class Drill:
             if case.fault == "pause":
                 run.signal(name, signal.SIGSTOP)
                 time.sleep(PAUSE_S / speed)
-                run.signal(name, signal.SIGCONT)
+                run.go_on(name)
             elif case.fault == "kill":
                 run.signal(name, signal.SIGKILL)
             else:

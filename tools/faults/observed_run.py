@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -122,6 +123,12 @@ class ObservedRun:
             except ProcessLookupError:
                 self.wait_end()
                 raise RunOver(self.ending()) from None
+
+    def go_on(self, process: str) -> None:
+        """Let a process, or "all", go on after a stop; one that went with its run meanwhile stays away."""
+        for name in PROCESSES if process == "all" else (process,):
+            with suppress(ProcessLookupError):
+                os.kill(self.status[name].pid, signal.SIGCONT)
 
     def wait(self, holds: Callable[[], bool], what: str = "") -> None:
         """Until `holds()`.
