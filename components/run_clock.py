@@ -29,9 +29,8 @@ class HubClock:
     """The run's time by io's clock, from another machine.
 
     Between two answers it goes on by this machine's clock, at the run's speed, also while the link is down, and it
-    never goes back.
-    It may be behind io's by as much as an answer took, and is never ahead: a message from the future would count
-    as fresh for too long.
+    never goes back. It may be behind io's by as much as an answer took, and is never ahead: a message from the
+    future would count as fresh for too long.
 
     Attributes:
         behind_s: how far it may be behind, at the last answer used.
