@@ -22,6 +22,7 @@ CHECKPOINT_S = 1.0
 _BATCH_S = 0.1  # of wall time: what a process that is killed takes with it at the most
 _BATCH_BYTES = 1 << 20
 _KEPT_S = 8.0  # a recorder that was held up can ask for what it has missed
+_KEPT_BATCHES = 60  # and one that comes late for the beginning of a process that seldom has anything to tell
 
 Record = tuple[str, int, int, bytes]
 """Key, time on the run's clock [ns], sequence number, bytes."""
@@ -175,12 +176,12 @@ class Journal:
             return None
         payload, now = batch.pack(), time.monotonic()
         self._kept.append((now, batch.number, payload))
-        while now - self._kept[0][0] > _KEPT_S:
+        while len(self._kept) > _KEPT_BATCHES and now - self._kept[0][0] > _KEPT_S:
             self._kept.popleft()
         return payload
 
     def kept(self, number: int) -> bytes | None:
-        """A batch of the last few seconds (also called from the bus's thread)."""
+        """A batch of the last few seconds, or of the last few at all (also called from the bus's thread)."""
         return next((payload for _, each, payload in list(self._kept) if each == number), None)
 
     def _log_steps(self) -> None:

@@ -22,7 +22,7 @@ _FLUSH_S = 0.4
 _PATIENCE_S = 0.5  # a batch that is not there by then is asked for
 _ANSWER_S = 1.0  # meanwhile nothing is written
 _GIVE_UP_S = 10.0  # a little longer than a process keeps a batch
-_BEGINNING = 30  # batches: of a process that has just started all are wanted, of an older one those to come
+_BEGINNING = 30  # batches: who has just started keeps all of them, and all are wanted; else those to come
 _HUB_S = 60.0
 _FREE_BYTES = 200_000_000
 

@@ -6,8 +6,10 @@ import pytest
 from surefoot.bus.codec import decode, encode
 from surefoot.bus.errors import MessageError
 from surefoot.bus.messages import OperatorCommand
+from surefoot.bus.recording import journal as journal_module
 from surefoot.bus.recording.journal import Batch, Journal
 from surefoot.bus.recording.step_log import Checkpoint, StepLog
+from surefoot.tools.recording.recorder import _BEGINNING
 
 
 def command(seq, boot=0):
@@ -33,6 +35,17 @@ def test_batches_are_numbered_and_hold_every_record_once():
     assert np.concatenate([log.read_seq for log in logs]).tolist() == [0, 1, 2, 3, 4]
     assert [Batch.unpack(journal.kept(number)) for number in range(3)] == taken
     assert journal.kept(3) is None
+
+
+def test_who_seldom_tells_anything_keeps_its_beginning_for_a_recorder_that_comes_late(monkeypatch):
+    monkeypatch.setattr(journal_module, "_KEPT_S", 0.0)
+    journal = Journal("elevation_map")
+    for seq in range(80):
+        journal.note_message(10.0 * seq, "map/health", seq, b"")
+        journal.take_packed()
+        if seq <= _BEGINNING:
+            assert all(journal.kept(number) is not None for number in range(seq + 1))
+    assert journal.kept(0) is None and journal.kept(79) is not None
 
 
 def test_nothing_noted_is_no_batch():
