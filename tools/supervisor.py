@@ -74,7 +74,8 @@ class Supervisor:
         self._sources, self._record = sources, record
         self._recorder: RecorderProcess | None = None
         self._clock_stands = False
-        self._asked = ""  # why a person wants it to end
+        self._asked, self._at_once = "", False  # why a person wants it to end, and whether without waiting
+        self._goes_on = False
         self.picture = Picture(simulated=self._simulated)
         for name in PROCESSES:
             if name not in self._network.components_here:
@@ -113,6 +114,7 @@ class Supervisor:
             for name in self._network.components_here:
                 if name != "io":
                     self._start(self.picture.processes[name])
+            self._goes_on = True
             while True:
                 self._look(each)
                 # In real time nobody waits: told to stand before its controller is there, a robot is asked for the
@@ -120,18 +122,28 @@ class Supervisor:
                 if not self._simulated and first and self.picture.all_there:
                     self._desk.command(first)
                     first = ""
-                if reason := self._reconcile() or self._parting.end(until(self.picture) or self._asked):
-                    self.picture.ending = reason
-                    return reason
+                reason = self._reconcile() or self._parting.end(until(self.picture) or self._asked)
+                if reason or self._at_once:
+                    self.picture.ending = reason or self._asked
+                    return self.picture.ending
                 time.sleep(_LOOK_S)
         finally:
+            self._goes_on = False
             self.stop()
 
     def end(self) -> bool:
-        """Have the run end once the robot sits: not where nothing is to be waited for, or it was asked before."""
-        if self._asked or not self._parting.settles:
+        """Have the run end at its next look, or once the robot sits; asked again, at its next look at the latest.
+
+        A signal's handler may call it in the middle of anything. Were an exception raised there, it could leave a
+        lock held, such as that by which a `Popen` waits, and the run would never end.
+
+        Returns:
+            False: there is no such look, before the run goes on and where it hangs; it has to be broken off.
+        """
+        if not self._goes_on or self._at_once:
             return False
-        self._asked = ENDED_BY_USER
+        self._at_once = self._asked != "" or not self._parting.settles
+        self._asked = self._asked or ENDED_BY_USER
         return True
 
     def stop(self) -> None:

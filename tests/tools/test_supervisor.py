@@ -20,7 +20,7 @@ from surefoot.config.typed_toml import to_table
 from surefoot.tools import end_signals, launcher, lending, supervisor_desk
 from surefoot.tools import supervisor as supervisor_module
 from surefoot.tools.reload.source_watch import SourceWatch
-from surefoot.tools.supervisor import Supervisor
+from surefoot.tools.supervisor import ENDED_BY_USER, Supervisor
 from surefoot.tools.supervisor_messages import Answer
 
 
@@ -426,16 +426,44 @@ def handlers():
         signal.signal(number, handler)
 
 
-def test_a_signal_ends_a_run_at_once_if_it_is_the_second_or_there_is_nothing_to_wait_for(machine, handlers):
-    supervisor, _, _ = machine("robot", "monotonic")
+def test_a_signal_ends_a_run_at_its_next_look_if_it_is_the_second_or_there_is_nothing_to_wait_for(
+    machine, handlers
+):
+    supervisor, _, bus = machine("robot", "monotonic")
     end_signals.heed(supervisor.end)
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt):  # it has not begun to look
         os.kill(os.getpid(), signal.SIGTERM)
+    looks = []
+
+    def look(picture):
+        looks.append(picture.t)
+        if signals:
+            os.kill(os.getpid(), signals.pop())  # no exception, whatever it is at
+            looks.append("goes on")
+
+    signals = [signal.SIGTERM]
+    assert supervisor.run(lambda picture: "", look) == ENDED_BY_USER
+    assert looks[-1] == "goes on" and looks.count("goes on") == 1 and [b"stand"] == [each for _, each in bus.said]
+
+    supervisor, _, bus = machine("robot", "monotonic")
+    end_signals.heed(supervisor.end)
     supervisor.picture.hardware = HardwareState()
     supervisor.picture.reference = MotionReference(state="PROBE")
-    os.kill(os.getpid(), signal.SIGTERM)
-    with pytest.raises(KeyboardInterrupt):
+    signals = [signal.SIGINT, signal.SIGTERM]
+    assert supervisor.run(lambda picture: "", look) == ENDED_BY_USER
+    assert [payload for _, payload in bus.said] == [b"stand", b"sit: the run is to end"]
+
+
+def test_a_run_that_hangs_is_broken_off_by_one_signal_more(machine, handlers):
+    supervisor, _, _ = machine("robot", "monotonic")
+    end_signals.heed(supervisor.end)
+
+    def hangs(picture):
+        os.kill(os.getpid(), signal.SIGTERM)
         os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        supervisor.run(lambda picture: "", hangs)
 
 
 @pytest.mark.parametrize("clock", ["simulated", "monotonic"])
