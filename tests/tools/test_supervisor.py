@@ -443,7 +443,7 @@ def test_a_signal_ends_a_run_at_its_next_look_if_it_is_the_second_or_there_is_no
 
     signals = [signal.SIGTERM]
     assert supervisor.run(lambda picture: "", look) == ENDED_BY_USER
-    assert looks[-1] == "goes on" and looks.count("goes on") == 1 and [b"stand"] == [each for _, each in bus.said]
+    assert looks[-1] == "goes on" and looks.count("goes on") == 1 and [each for _, each in bus.said] == [b"stand"]
 
     supervisor, _, bus = machine("robot", "monotonic")
     end_signals.heed(supervisor.end)
