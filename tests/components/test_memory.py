@@ -17,6 +17,7 @@ from surefoot.components.memory import ForeignMemory, Memory
 from surefoot.components.registry import component_class
 from surefoot.config.deployment import Deployment, Run
 from surefoot.config.fsm import Fsm
+from surefoot.config.mpc import Mpc
 from surefoot.config.terrain import Terrain, Tiles
 
 NAMES = ("estimator", "wbc", "mpc", "fsm", "trajopt", "elevation_map")
@@ -64,6 +65,7 @@ def run():
     """A blow-by-blow of Fig. 6: FR breaks through a tile, is stopped on its next way, and returns."""
     deployment = Deployment(
         run=Run(vision=True),
+        mpc=Mpc(profile="light"),
         terrain=Terrain(kind="tiles", tiles=Tiles(load_min_n=48.0, load_max_n=52.0)),
         fsm=Fsm(crawl_order=(1, 2, 0, 3), probe_around=False),
     )

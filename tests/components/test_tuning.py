@@ -11,12 +11,13 @@ from surefoot.components.lockstep import Lockstep
 from surefoot.components.registry import component_class
 from surefoot.config.deployment import Deployment
 from surefoot.config.fsm import Fsm
+from surefoot.config.mpc import Mpc
 from surefoot.config.tuning import tuned
 from surefoot.config.typed_toml import ConfigError
 from surefoot.tools.recording.lockstep_recording import LockstepRecording
 from surefoot.tools.recording.replay import replay
 
-DEPLOYMENT = Deployment(fsm=Fsm(probe_around=False))
+DEPLOYMENT = Deployment(fsm=Fsm(probe_around=False), mpc=Mpc(profile="light"))
 CHANGES = ("ocp.weights.force=0.02", "wbc.kp=90", "fsm.swing_s=0.45", "trajopt.envelope_scale=0.9")
 TUNED = ("fsm", "mpc", "trajopt", "wbc")
 

@@ -1,4 +1,7 @@
-"""Stacks of processes over Zenoh, started by hand or by `surefoot run`, and all that they publish."""
+"""Stacks of processes over Zenoh, started by hand or by `surefoot run`, and all that they publish.
+
+The MPC has its light profile where a test does not ask for the paper's, which is half of what a stack computes.
+"""
 
 import json
 import os
@@ -108,7 +111,7 @@ class Stack(Ear):
     def __init__(self, tmp_path, overrides=(), leave_out=()):
         self.namespace = f"test-{os.getpid()}-{tmp_path.name}"
         self.config, self.log = tmp_path / "live.toml", (tmp_path / "log").open("ab")
-        self.config.write_text('[terrain]\nkind = "flat"\n')
+        self.config.write_text('[terrain]\nkind = "flat"\n[mpc]\nprofile = "light"\n')
         self.overrides = [f"run.namespace={self.namespace}", *overrides]
         self.deployment = load_deployment(self.config, self.overrides)
         self.children, self.boots = {}, {}
@@ -176,7 +179,8 @@ class Supervised(Ear):
     def __init__(self, tmp_path, *settings, flags=(), env=None, until_up=True):
         self.namespace = f"test-{os.getpid()}-{tmp_path.name}"
         self.output = tmp_path / "output"
-        words = [f"run.namespace={self.namespace}", f"run.log_dir={tmp_path / 'logs'}", *settings]
+        words = [f"run.namespace={self.namespace}", f"run.log_dir={tmp_path / 'logs'}"]
+        words += ["mpc.profile=light", *settings]
         command = [*CLI, "run", "flat", "--plain", *flags]
         command += [word for setting in words for word in ("--set", setting)]
         self.session, self.lent = None, []
@@ -319,7 +323,7 @@ class TwoMachines(Ear):
         self.config = tmp_path / "two.toml"
         lines = [f"{host} = {list(names)!r}" for host, names in hosts.items()]
         self.config.write_text(
-            f'[terrain]\nkind = "flat"\n[run]\nnamespace = "{self.namespace}"\n'
+            f'[terrain]\nkind = "flat"\n[mpc]\nprofile = "light"\n[run]\nnamespace = "{self.namespace}"\n'
             f'[network]\nlisten = "tls/0.0.0.0:7448"\naddress = "{link.address["robot"]}"\nkeys_dir = "{keys}"\n'
             "[network.hosts]\n" + "\n".join(lines) + "\n"
         )

@@ -91,7 +91,7 @@ def test_a_burst_on_every_topic_leaves_every_byte_as_it_was(stack):
 
 def test_in_real_time_no_second_publisher_moves_the_robot(stack):
     """It lies, damped: whatever another says for the whole-body controller, no motor gets a torque."""
-    live = stack(("run.clock=monotonic", "mpc.profile=light", f"run.epoch_s={time.monotonic()!r}"))
+    live = stack(("run.clock=monotonic", f"run.epoch_s={time.monotonic()!r}"))
     live.wait(lambda: len(live.status) == len(PROCESSES) and live.t() > 4.0 and live.heard["joint/command"])
     begun = len(live.heard["sim/truth"])
     for key in KEYS:

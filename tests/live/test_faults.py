@@ -44,7 +44,8 @@ def test_the_cover_is_one():
 @pytest.mark.parametrize("terrain", CASES)
 def test_with_simulated_time_a_fault_changes_no_byte(terrain, tmp_path):
     cases = [Case(*case) for case in CASES[terrain]]
-    results = Drill(CONFIG / f"{terrain}.toml", ["fsm.probe_around=false"], tmp_path).simulated(cases)
+    settings = ["fsm.probe_around=false", "mpc.profile=light"]
+    results = Drill(CONFIG / f"{terrain}.toml", settings, tmp_path).simulated(cases)
     assert [result.case for result in results if not result.good] == [], results
     for result in results:
         assert result.told or result.case.fault == "pause", f"nobody said anything of {result.case}"

@@ -13,7 +13,7 @@ UNTIL_S = 2.9  # plans a stride, shifts its base, lifts a foot off, touches down
 
 
 def test_over_the_bus_and_in_one_process_give_the_same_bytes(stack):
-    live = stack(("run.vision=true",), leave_out=("trajopt",))
+    live = stack(("run.vision=true", "mpc.profile=paper"), leave_out=("trajopt",))
     live.begin(b"forward")
     live.wait(lambda: live.t() >= UNTIL_S + 0.05)
     live.stand_still()

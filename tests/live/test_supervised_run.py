@@ -62,7 +62,7 @@ def test_no_process_is_left_behind(supervised, how):
 
 def test_in_real_time_a_successor_takes_over_without_a_trace(supervised):
     """Only their statuses tell the two apart; one that comes too late on a busy machine tries again."""
-    live = supervised("run.clock=monotonic", "run.speed=0.2", "mpc.profile=light", 'run.command=""')
+    live = supervised("run.clock=monotonic", "run.speed=0.2", 'run.command=""')
     live.pids()
     live.wait(lambda: "fsm" in live.status and live.status["fsm"].life == "RUN")
     for name, key in (("fsm", "fsm/reference"), ("wbc", "joint/command")):
@@ -89,7 +89,7 @@ def test_in_real_time_a_successor_takes_over_without_a_trace(supervised):
 
 
 def test_in_real_time_a_process_that_crashes_ends_the_run(supervised):
-    live = supervised("run.clock=monotonic", "mpc.profile=light", 'run.command=""')
+    live = supervised("run.clock=monotonic", 'run.command=""')
     live.pids()
     live.wait(lambda: live.status["mpc"].steps > 0 and live.status["io"].steps > 0)
     os.kill(live.status["mpc"].pid, signal.SIGKILL)

@@ -44,7 +44,7 @@ def test_over_a_link_that_loses_and_delays_packets_the_bytes_are_the_same(link, 
 
 def test_in_real_time_the_robot_is_safe_without_the_link_and_goes_on_with_it(link, two_machines):
     hosts = {"robot": ("io", "estimator", "wbc", "fsm"), "laptop": ("mpc", "trajopt", "elevation_map")}
-    live = two_machines(hosts, "run.clock=monotonic", "run.speed=0.2", "mpc.profile=light", "run.command=stand")
+    live = two_machines(hosts, "run.clock=monotonic", "run.speed=0.2", "run.command=stand")
 
     def wait(holds):
         """Until `holds()`; a machine so busy that the robot damps itself meanwhile is no test of the link."""

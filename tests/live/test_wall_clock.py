@@ -38,7 +38,7 @@ def test_with_simulated_time_no_byte_changes(jumping, stack):
 
 
 def test_in_real_time_the_run_goes_on(jumping, supervised):
-    live = supervised("run.clock=monotonic", "mpc.profile=light", 'run.command=""')
+    live = supervised("run.clock=monotonic", 'run.command=""')
     pids = live.pids()
     live.go_on(7.0)
     assert live.run.poll() is None and live.pids() == pids

@@ -14,7 +14,7 @@ PLANKS = Path(deployment_module.__file__).parent / "planks_emulated.toml"
 
 
 def test_on_a_bad_link_it_stands_up_swings_a_leg_and_probes():
-    done = walk(load_deployment(PLANKS), 4.6)
+    done = walk(load_deployment(PLANKS, ["mpc.profile=light"]), 4.6)
     assert done.sound, str(done)
     assert done.counts["contact"] >= 1 and done.counts["force_held"] >= 1 and done.witness.tilt < 0.1
     assert 0.005 < done.link.loss < 0.1 and done.link.commands == pytest.approx(4.6 * 500, abs=20)

@@ -15,7 +15,7 @@ BY_NAME = {fault.name: fault for fault in FAULTS}
 
 @pytest.mark.parametrize("name", ["every state lost", "hot motor", "both ways lost for 30 ms", "dead motor"])
 def test_a_robot_that_stands_ends_as_declared(name):
-    drill = RobotDrill(CONFIG)
+    drill = RobotDrill(CONFIG, ["mpc.profile=light"])
     result = drill.carry_out(BY_NAME[name], "standing")
     assert result.good and result.outcome == "upright", result
     if name == "hot motor":

@@ -57,7 +57,7 @@ def test_a_process_is_told_by_its_name_in_the_run():
 
 def test_a_run_with_an_emulator_is_sampled_to_its_end(tmp_path):
     settings = ["terrain.kind=flat", f"run.namespace=soak-{os.getpid()}", f"hw.aliengo.port={free_port()}"]
-    settings += ["hw.aliengo.local_port=0", "run.command=stand"]
+    settings += ["hw.aliengo.local_port=0", "run.command=stand", "mpc.profile=light"]
     code, found = soak(CONFIG, settings, 1.0, 0.5, tmp_path, lambda words: None)
     said = (tmp_path / "run.txt").read_text()
     assert code == 0 and "time is up" in said, said

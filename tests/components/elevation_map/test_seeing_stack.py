@@ -8,11 +8,12 @@ from surefoot.components.clock_messages import pack_snapshot, unpack_snapshot
 from surefoot.components.elevation_map.elevation_map import ElevationMap
 from surefoot.components.lockstep import Lockstep
 from surefoot.config.deployment import Deployment, Run
+from surefoot.config.mpc import Mpc
 from surefoot.config.terrain import Planks, Terrain
 
 
 def run(until_s, command="", kind="flat", part=ElevationMap):
-    deployment = Deployment(run=Run(vision=True), terrain=Terrain(kind=kind))
+    deployment = Deployment(run=Run(vision=True), terrain=Terrain(kind=kind), mpc=Mpc(profile="light"))
     stack = Lockstep(deployment, given=[part(deployment)])
     heard = {}
     stack.listen(lambda key, message: heard.setdefault(key, []).append(message))

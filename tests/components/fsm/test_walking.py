@@ -1,4 +1,7 @@
-"""The whole stack in lockstep: probed steps on flat ground, a collapse and the recovery on planks."""
+"""The whole stack in lockstep: probed steps on flat ground, a collapse and the recovery on planks.
+
+These two with the paper's MPC; what the state machine does on other ways is seen with its light profile.
+"""
 
 import numpy as np
 import pytest
@@ -8,7 +11,12 @@ from surefoot.components.lockstep import Lockstep
 from surefoot.config.deployment import Deployment
 from surefoot.config.fsm import Fsm
 from surefoot.config.hw import Hw
+from surefoot.config.mpc import Mpc
 from surefoot.config.terrain import Planks, Terrain
+
+LIGHT = Mpc(profile="light")
+# The first foothold of FR lies 4 cm beyond the hinge of a board on a spring too weak for it.
+WEAK = Terrain(kind="planks", planks=Planks(start_offset_m=0.0, stiffness=60.0))
 
 
 class Run:
@@ -78,7 +86,7 @@ def test_the_foot_advances_and_the_robot_stays_level(flat):
 
 
 def test_the_goal_ends_the_walk_and_sit_lies_down():
-    run = Run(Deployment(fsm=Fsm(goal_m=0.05, probe_around=False)))
+    run = Run(Deployment(mpc=LIGHT, fsm=Fsm(goal_m=0.05, probe_around=False)))
     run.stack.run(40.0, lambda: bool(run.references) and run.references[-1].finished)
     assert run.references[-1].finished and run.references[-1].state == "STOPPED"
     run.stack.command("sit")
@@ -97,10 +105,8 @@ def test_a_plank_that_gives_way_is_left_and_another_foothold_found():
 
 
 def test_without_a_foothold_the_leg_returns_and_the_robot_stops():
-    # The one candidate lies 4 cm beyond the hinge of a board on a spring too weak for it.
-    weak = Terrain(kind="planks", planks=Planks(start_offset_m=0.0, stiffness=60.0))
     fsm = Fsm(crawl_order=(1, 2, 0, 3), alternatives=0, probe_around=False, put_off=False)
-    run = Run(Deployment(terrain=weak, fsm=fsm))
+    run = Run(Deployment(mpc=LIGHT, terrain=WEAK, fsm=fsm))
     stopped = run.until(15.0, "stopped")
     assert stopped and "no safe foothold" in stopped[0].reason
     run.stack.run(run.stack.t + 1.5)
@@ -111,7 +117,7 @@ def test_without_a_foothold_the_leg_returns_and_the_robot_stops():
 
 
 def test_stop_in_mid_swing_puts_the_foot_back():
-    run = Run(Deployment())
+    run = Run(Deployment(mpc=LIGHT))
     run.stack.run(20.0, lambda: bool(run.references) and run.references[-1].state == "DETECT_CONTACT")
     run.stack.run(run.stack.t + 0.2)
     run.stack.command("stop")
@@ -121,7 +127,7 @@ def test_stop_in_mid_swing_puts_the_foot_back():
 
 
 def test_a_pause_in_mid_swing_finishes_the_step_and_a_skip_under_load_throws_nobody():
-    run = Run(Deployment(fsm=Fsm(probe_around=False)))
+    run = Run(Deployment(mpc=LIGHT, fsm=Fsm(probe_around=False)))
     run.stack.run(20.0, lambda: bool(run.references) and run.references[-1].state == "DETECT_CONTACT")
     run.stack.command("pause")
     run.stack.run(run.stack.t + 5.0, lambda: run.references[-1].state == "STOPPED")
@@ -141,7 +147,8 @@ def test_a_pause_in_mid_swing_finishes_the_step_and_a_skip_under_load_throws_nob
 
 
 def test_stop_while_an_alternative_is_planned_puts_the_raised_foot_back():
-    run = Run(Deployment(terrain=Terrain(kind="planks"), fsm=Fsm(crawl_order=(1, 2, 0, 3), probe_around=False)))
+    fsm = Fsm(crawl_order=(1, 2, 0, 3), probe_around=False)
+    run = Run(Deployment(mpc=LIGHT, terrain=WEAK, fsm=fsm))
     run.until(20.0, "collapse")
     run.stack.run(run.stack.t + 5.0, lambda: run.references[-1].state == "OPT")
     assert run.references[-1].state == "OPT" and run.truth[-1].force_W[1, 2] == 0.0
@@ -154,6 +161,6 @@ def test_stop_while_an_alternative_is_planned_puts_the_raised_foot_back():
 
 
 def test_an_unknown_command_is_refused_by_name():
-    run = Run(Deployment(), "moonwalk")
+    run = Run(Deployment(mpc=LIGHT), "moonwalk")
     refused = run.until(0.1, "refused")
     assert "moonwalk" in refused[0].reason and "forward" in refused[0].reason

@@ -8,6 +8,7 @@ from surefoot.components.component import Component
 from surefoot.components.lockstep import Lockstep
 from surefoot.components.mpc.mpc import Mpc
 from surefoot.config.deployment import Deployment
+from surefoot.config.mpc import Mpc as Settings
 
 SILENT_S = 1.0
 
@@ -37,7 +38,7 @@ class SilentScript(Script):
 
 
 def run(seconds, *parts: type[Component]):
-    deployment = Deployment()
+    deployment = Deployment(mpc=Settings(profile="light"))
     stack = Lockstep(deployment, CHAIN, given=[part(deployment) for part in parts])
     log = {"sim/truth": [], "joint/command": []}
     stack.listen(lambda key, message: log[key].append(message) if key in log else None)

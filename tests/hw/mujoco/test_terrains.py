@@ -82,10 +82,11 @@ def test_the_same_seed_the_same_scene(name):
     def scene(seed):
         return bytes_of(build_scene(deployment(name, seed), None, 0.6)[0])
 
-    assert scene(1) == scene(1)
+    one = scene(1)
+    assert one == scene(1)
     terrain = deployment(name, 1).terrain
     drawn = terrain.kind not in ("flat", "planks") or terrain.planks.missing_count > 0
-    assert (scene(1) != scene(2)) == drawn
+    assert (one != scene(2)) == drawn
 
 
 def test_the_level_of_a_surface_with_an_incline_and_a_step():

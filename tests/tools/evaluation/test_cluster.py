@@ -38,7 +38,7 @@ def address(cluster):
 @pytest.fixture
 def scenario(tmp_path):
     path = tmp_path / "level.toml"
-    path.write_text('[terrain]\nkind = "flat"\n')
+    path.write_text('[terrain]\nkind = "flat"\n[mpc]\nprofile = "light"\n')
     return path
 
 

@@ -33,7 +33,7 @@ LIMIT_S = 3.0  # the first probe has begun to press
 @pytest.fixture
 def scenario(tmp_path):
     path = tmp_path / "level.toml"
-    path.write_text('[terrain]\nkind = "flat"\n')
+    path.write_text('[terrain]\nkind = "flat"\n[mpc]\nprofile = "light"\n')
     return path
 
 

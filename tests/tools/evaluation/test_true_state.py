@@ -6,13 +6,14 @@ import pytest
 from surefoot.components.lockstep import Lockstep
 from surefoot.components.registry import component_class
 from surefoot.config.deployment import Deployment
+from surefoot.config.mpc import Mpc
 from surefoot.tools.evaluation.true_state import TrueState
 
 
 @pytest.fixture(scope="module")
 def told():
     """Truth and estimate of every cycle while the robot starts to walk: every foot has moved."""
-    deployment = Deployment()
+    deployment = Deployment(mpc=Mpc(profile="light"))
     stack = Lockstep(deployment, given=[TrueState(deployment)])
     log = {"sim/truth": [], "state/estimate": []}
     stack.listen(lambda key, message: log[key].append(message) if key in log else None)
