@@ -1,7 +1,7 @@
 """The whole stack in lockstep: probed steps on flat ground, a collapse and the recovery on planks.
 
-Where the ground gives way with the paper's MPC: with the light profile the robot tilts twice as far. What the state
-machine does on ground that bears is seen with that.
+Where the ground gives way with the paper's MPC, which bears it better than the light profile; what the state
+machine does on ground that bears is seen with that one.
 """
 
 import numpy as np
