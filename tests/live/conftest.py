@@ -5,6 +5,7 @@ The MPC has its light profile where a test does not ask for the paper's, which i
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -290,13 +291,25 @@ class Link:
         self._set("up")
 
     def spoil(self, loss_percent, delay_ms):
-        """Lose and delay packets both ways; skips the test where the kernel cannot."""
+        """Lose packets both ways, and delay them where the kernel has netem; skips the test where it loses none."""
+        rule = ("numgen", "random", "mod", "100", "<", str(loss_percent), "counter", "drop")
+        hook = ("{", "type", "filter", "hook", "input", "priority", "0", ";", "}")
         try:
-            for machine, device in self._devices.items():
-                netem = ("netem", "loss", f"{loss_percent}%", "delay", f"{delay_ms}ms")
-                self.on(machine, "tc", "qdisc", "add", "dev", device, "root", *netem)
+            for machine in self.names:
+                self.on(machine, "nft", "add", "table", "ip", "worn")
+                self.on(machine, "nft", "add", "chain", "ip", "worn", "arrives", *hook)
+                arrives = ("iifname", self._devices[machine])
+                self.on(machine, "nft", "add", "rule", "ip", "worn", "arrives", *arrives, *rule)
+                netem = ("root", "netem", "delay", f"{delay_ms}ms")
+                with suppress(OSError, subprocess.CalledProcessError):
+                    self.on(machine, "tc", "qdisc", "add", "dev", self._devices[machine], *netem)
         except (OSError, subprocess.CalledProcessError) as error:
-            pytest.skip(f"no loss and delay: {getattr(error, 'stderr', error)}")
+            pytest.skip(f"no loss of packets: {getattr(error, 'stderr', error)}")
+
+    def lost(self, machine):
+        """How many packets have been lost on their way to a machine."""
+        rules = self.on(machine, "nft", "list", "chain", "ip", "worn", "arrives")
+        return int(re.search(r"counter packets (\d+)", rules)[1])
 
     def close(self):
         """Remove both."""

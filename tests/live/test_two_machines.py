@@ -35,11 +35,12 @@ def test_simulated_time_waits_for_a_link_that_is_down_and_goes_on_with_the_same_
     assert not ill, live.logs()
 
 
-def test_over_a_link_that_loses_and_delays_packets_the_bytes_are_the_same(link, two_machines):
+def test_over_a_link_that_loses_every_fifth_packet_the_bytes_are_the_same(link, two_machines):
     link.spoil(20, 10)
     live = two_machines(HOSTS, "run.command=forward")
     live.wait(lambda: live.t() >= 0.2)
     assert_same_bytes_as_far_as_heard(live, 0.2)
+    assert all(link.lost(machine) > 20 for machine in live.runs)
 
 
 def test_in_real_time_the_robot_is_safe_without_the_link_and_goes_on_with_it(link, two_machines):
