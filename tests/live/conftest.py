@@ -291,7 +291,7 @@ class Link:
         self._set("up")
 
     def spoil(self, loss_percent, delay_ms):
-        """Lose packets both ways, and delay them where the kernel has netem; skips the test where it loses none."""
+        """Lose packets both ways, and delay them where the kernel has netem; a skip where it loses none."""
         rule = ("numgen", "random", "mod", "100", "<", str(loss_percent), "counter", "drop")
         hook = ("{", "type", "filter", "hook", "input", "priority", "0", ";", "}")
         try:
