@@ -128,8 +128,8 @@ class Supervisor:
                     return self.picture.ending
                 time.sleep(_LOOK_S)
         finally:
-            self._goes_on = False
             self.stop()
+            self._goes_on = False
 
     def end(self) -> bool:
         """Have the run end at its next look, or once the robot sits; asked again, at its next look at the latest.
