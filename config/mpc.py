@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from surefoot.config.typed_toml import ConfigError, Tuned, Within
+from surefoot.config.typed_toml import ConfigError, Within
 
-_PROFILES = {"paper": (67, 0.015, 0.015, 1.0), "light": (40, 0.025, 0.025, 3.0)}
-"""Intervals, interval [s], lead [s] and force scale of each profile; the rate of each is in the topic table."""
+_PROFILES = {"paper": (67, 0.015, 0.015), "light": (40, 0.025, 0.025)}
+"""Intervals, interval [s] and lead [s] of each profile; the rate of each is in the topic table."""
 
 _HORIZON_MIN_S = 0.2
 """Lift-offs are announced 0.1 s ahead, and a policy is followed until it is 0.1 s old."""
@@ -23,17 +23,17 @@ class Mpc:
 
     Attributes:
         lead_s: the plan begins this far ahead: budget of the solve and way of a command to the motors.
-        force_scale: of `ocp.weights.force`, which sets the loop's bandwidth: half the rate bears less of it.
+        iterations: of the SQP in one tick, at the most: after the first, only while a step was scaled down.
     """
 
     profile: Literal["paper", "light"] = "paper"
     intervals: Annotated[int, Within(0, 200)] = 0
     interval_s: Annotated[float, Within(0.0, 0.1)] = 0.0
     lead_s: Annotated[float, Within(0.0, 0.1)] = 0.0
-    force_scale: Tuned[Annotated[float, Within(0.0, 100.0)]] = 0.0
+    iterations: Annotated[int, Within(1, 10)] = 3
 
     def __post_init__(self) -> None:
-        names = ("intervals", "interval_s", "lead_s", "force_scale")
+        names = ("intervals", "interval_s", "lead_s")
         for name, figure in zip(names, _PROFILES[self.profile], strict=True):
             if not getattr(self, name):
                 object.__setattr__(self, name, figure)

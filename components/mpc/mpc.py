@@ -27,27 +27,29 @@ _STANDING = (LegStatus.STANCE, LegStatus.PROBING, LegStatus.COLLAPSING)
 
 
 class _Stopwatch:
-    """Wall time at the end of each stage of a tick: a measurement that nothing else in the step reads."""
+    """Wall time of each stage of a tick, of one that comes again in all: nothing else in the step reads it."""
 
     def __init__(self) -> None:
-        self.stages: list[str] = []
-        self.times = [perf_counter()]
+        self.ms: dict[str, float] = {}
+        self._last = perf_counter()
 
     def mark(self, stage: str) -> None:
-        self.stages.append(stage)
-        self.times.append(perf_counter())
+        now = perf_counter()
+        self.ms[stage] = self.ms.get(stage, 0.0) + 1e3 * (now - self._last)
+        self._last = now
 
 
 class Mpc(Component):
     """One SQP iteration a tick, warm-started by shifting the last trajectory by the time that has passed.
 
-    A solver that fails is reported by name in an invalid policy, and the next tick starts cold.
+    Where its step was too large to be taken in full, as at an event, others follow in the same tick. A solver
+    that fails is reported by name in an invalid policy, and the next tick starts cold.
     """
 
     name: ClassVar[str] = "mpc"
     inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "fsm/reference", "operator/tuning")
     outputs: ClassVar[tuple[str, ...]] = ("mpc/policy",)
-    memory: ClassVar[Memory] = Memory("_contact", "_t", _iterate=Trajectory)
+    memory: ClassVar[Memory] = Memory("_contact", "_before_W", "_t", _iterate=Trajectory)
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
@@ -61,12 +63,12 @@ class Mpc(Component):
         self._height = robot.nominal.leg_height
         self._iterate: Trajectory | None = None
         self._contact: np.ndarray | None = None
+        self._before_W = np.zeros((4, 3))
         self._t = 0.0
 
     def set_up(self) -> None:
-        ocp, settings = self.deployment.ocp, self.deployment.mpc
-        weights = replace(ocp.weights, force=settings.force_scale * ocp.weights.force)
-        self._problem = Problem(replace(ocp, weights=weights), self.deployment.load_robot(), settings.intervals)
+        deployment = self.deployment
+        self._problem = Problem(deployment.ocp, deployment.load_robot(), deployment.mpc.intervals)
 
     def warm_up(self) -> None:
         """One solve for a standing robot: the first real tick is as fast as any."""
@@ -92,17 +94,35 @@ class Mpc(Component):
         lead = self.deployment.mpc.lead_s
         begins = t + lead
         nodes = self._sampler.sample(reference, begins)
-        measured = self._predict(self.measured(estimate), estimate, self._forces_at(t, reference), lead)
+        acting_W = self._acting(t, reference)
+        measured = self._predict(self.measured(estimate), estimate, acting_W, lead)
         start = self._warm_start(nodes, begins)
         watch.mark("references")
         try:
-            step = self._problem.iterate(start, nodes, measured, watch.mark)
+            step = self._solve(start, nodes, measured, watch)
         except SolverFailed as error:
             self._iterate, self.trouble = None, str(error)
             outbox.publish("mpc/policy", Policy(t=begins, dt=self._dt, solver=self.trouble))
             return
+        self._before_W = acting_W if self._iterate is None else self._planned(self._iterate, begins - 1e-6)
         self._iterate, self._contact, self._t = step.iterate, nodes.contact, begins
         self._publish(begins, nodes, step, watch, outbox)
+
+    def _solve(self, start: Trajectory, nodes: NodeReference, measured: State, watch: _Stopwatch) -> Step:
+        """SQP iterations until a step has been taken in full, `iterations` at the most.
+
+        When a foot is lost, the last plan is far from a new one, and a plan half way between them is none: its
+        forces do not do to the base what its states say, and a robot that follows them is thrown over.
+
+        Raises:
+            SolverFailed: a QP has no solution.
+        """
+        step = self._problem.iterate(start, nodes, measured, watch.mark)
+        for _ in range(1, self.deployment.mpc.iterations):
+            if step.scale == 1.0:
+                break
+            step = self._problem.iterate(step.iterate, nodes, measured, watch.mark)
+        return step
 
     def measured(self, estimate: StateEstimate) -> State:
         """The state x of an estimate: momentum from the base's and the joints' velocities."""
@@ -113,15 +133,24 @@ class Mpc(Component):
         h = pin.computeCentroidalMomentum(self._model, self._data, q, v).vector / self._mass
         return State(h, np.array(estimate.p_WB), R, estimate.q.reshape(4, 3))
 
-    def _forces_at(self, t: float, reference: MotionReference) -> np.ndarray:
-        """(4, 3) forces of the last trajectory about time t, of the feet that stand now [N]."""
-        stance = np.array([status in _STANDING for status in reference.leg_status.tolist()])
+    def _acting(self, t: float, reference: MotionReference) -> np.ndarray:
+        """(4, 3) mean forces from t until the new plan begins [N]; without a plan the feet share the weight.
+
+        The last plan begins after t: up to there it is the one before it that acts. Forces of a foot that has left
+        the ground since then count too: until the new policy comes `wbc` asks their wrench of the other feet.
+        """
         if self._iterate is None:
+            stance = np.array([status in _STANDING for status in reference.leg_status.tolist()])
             force = np.zeros((4, 3))
             force[stance, 2] = self._mass * GRAVITY / max(int(stance.sum()), 1)
             return force
+        share = min(max((self._t - t) / self.deployment.mpc.lead_s, 0.0), 1.0)
+        return share * self._before_W + (1.0 - share) * self._planned(self._iterate, max(t, self._t))
+
+    def _planned(self, plan: Trajectory, t: float) -> np.ndarray:
+        """(4, 3) forces of the last plan at time t [N]."""
         step = min(max(int((t - self._t) / self._dt), 0), self._problem.N - 1)
-        return self._iterate.force_W[step] * stance[:, None]
+        return plan.force_W[step]
 
     def _predict(self, now: State, estimate: StateEstimate, force_W: np.ndarray, dt: float) -> State:
         """The state after `dt` [s] under the forces that act meanwhile: one explicit step of eq. (1c)."""
@@ -183,7 +212,7 @@ class Mpc(Component):
             solver="ok",
             constraint=tuple(violations),
             violation=np.array(list(violations.values())),
-            stage=tuple(watch.stages),
-            stage_ms=1e3 * np.diff(watch.times),
+            stage=tuple(watch.ms),
+            stage_ms=np.array(list(watch.ms.values())),
         )
         outbox.publish("mpc/policy", policy)

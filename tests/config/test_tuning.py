@@ -18,7 +18,7 @@ def test_weights_gains_and_thresholds_are_tunable_and_no_limit_of_a_safeguard_is
     settings = tunable_settings()
     for path in ("ocp.weights.force", "wbc.kp", "fsm.collapse_m", "trajopt.envelope_scale", "fsm.cap_forces"):
         assert path in settings
-    assert {path.partition(".")[0] for path in settings} == {"ocp", "mpc", "trajopt", "wbc", "fsm"}
+    assert {path.partition(".")[0] for path in settings} == {"ocp", "trajopt", "wbc", "fsm"}
     for path in ("fsm.tilt_max", "fsm.tilt_hold", "fsm.margin_hold_m", "fsm.hold_error", "ocp.force_max_n"):
         assert path not in settings
     assert all(setting.limits is not None for path, setting in settings.items() if not on_or_off(path))

@@ -3,15 +3,20 @@
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from standing import LEGS, ROBOT, WEIGHT
 
 from surefoot.bus.codec import check
-from surefoot.bus.messages import ControlMode, MotionReference, StateEstimate
+from surefoot.bus.messages import ControlMode, LegStatus, MotionReference, StateEstimate
 from surefoot.components.component import Inbox, Outbox
 from surefoot.components.mpc.motion_sampler import MotionSampler
 from surefoot.components.mpc.mpc import Mpc
+from surefoot.components.robot_model import build_model
+from surefoot.components.robot_model.rotation import matrix_of_rpy
 from surefoot.config.deployment import Deployment
+from surefoot.config.mpc import Mpc as Settings
+from surefoot.config.robot import GRAVITY
 
 Q = np.tile(ROBOT.nominal.stand_q, 4)
 POSE = np.array([0.0, 0.0, 0.4, 0.0, 0.0, 0.0])
@@ -121,8 +126,8 @@ def test_probing_forces_follow_each_other_with_a_blend():
 
 
 class Loop:
-    def __init__(self):
-        self.mpc = Mpc(Deployment())
+    def __init__(self, settings=None):
+        self.mpc = Mpc(Deployment(mpc=settings or Settings()))
         self.mpc.warm_up()
         self.inbox, self.got = Inbox(self.mpc.inputs), []
         self.outbox = Outbox(self.mpc.outputs, lambda key, message: self.got.append(check(message)))
@@ -161,6 +166,51 @@ def test_a_swing_leg_is_unloaded_and_follows_its_spline():
     p_WF = policy.x[:, 6:9] + LEGS.position(policy.x[:, 12:].reshape(-1, 4, 3))[:, 1]
     nodes = MotionSampler(ROBOT, 67, 0.015).sample(swinging(), policy.t)
     assert np.abs(p_WF - nodes.p_WF[:, 1])[:60].max() < 0.02
+
+
+@pytest.mark.parametrize("status", [LegStatus.STANCE, LegStatus.SWING])
+def test_a_plan_begins_with_the_momentum_that_the_forces_until_then_give(status):
+    loop, lean = Loop(), replace(STAND, base_to=POSE + [0.05, 0.03, 0.0, 0.0, 0.0, 0.0], base_t1=0.3)
+    first, second = (loop.tick(t, lean) for t in (0.0, 0.01))
+    # What a foot that is lost since then was to give is asked of the others: it makes no difference.
+    third = loop.tick(0.02, replace(lean, leg_status=np.array([0, status, 0, 0], np.uint8)))
+    # The third plan begins at 35 ms: until 25 ms the first one acts, then the second.
+    impulse = 0.005 * first.u[0, :12].reshape(4, 3) + 0.010 * second.u[0, :12].reshape(4, 3)
+    assert not np.allclose(first.u[0, :12], second.u[0, :12], atol=1.0)
+    expected = impulse.sum(axis=0) / ROBOT.mass - [0.0, 0.0, 0.015 * GRAVITY]
+    np.testing.assert_allclose(third.x[0, :3], expected, atol=1e-9)
+
+
+def moments(policy):
+    """(3,) moment of a policy's first forces about the centre of mass, and the one that its states tell [N m]."""
+    model, x = build_model(ROBOT), policy.x[0]
+    R = matrix_of_rpy(x[9:12])
+    q = np.concatenate([x[6:9], pin.Quaternion(R).coeffs(), x[12:]])
+    com_W = pin.centerOfMass(model, model.createData(), q)
+    lever = x[6:9] + LEGS.position(x[12:].reshape(4, 3)) @ R.T - com_W
+    told = ROBOT.mass / policy.dt * (policy.x[1, 3:6] - x[3:6])
+    return np.cross(lever, policy.u[0, :12].reshape(4, 3)).sum(axis=0), told
+
+
+@pytest.mark.parametrize("profile", ["paper", "light"])
+def test_when_a_foot_is_lost_the_forces_of_the_plan_do_what_its_states_say(profile):
+    base = POSE + [-0.03, 0.05, 0.0, 0.0, 0.0, 0.0]  # inside the three feet that stay
+    pressing = replace(
+        STAND, base_from=base, base_to=base, probe_leg=1, probe_t0=-0.2, probe_dwell_s=1.0, probe_blend_s=0.03,
+        probe_force_W=np.tile([0.0, 0.0, 80.0], (7, 1)),
+    )  # fmt: skip
+    up = FEET[1] + [0.0, 0.0, 0.08]
+    lost = replace(pressing, probe_leg=-1, swing_leg=1, swing_t1=0.6, swing_from=FEET[1], swing_to=up)
+    q = LEGS.inverse((FEET - base[:3])[None])[0].ravel()
+    gap_nm = {}
+    for iterations in (1, 3):
+        loop = Loop(Settings(profile=profile, iterations=iterations))
+        for tick in range(16):
+            reference, state = pressing if tick < 15 else lost, estimate(0.02 * tick, p_WB=base[:3], q=q)
+            policy = loop.tick(0.02 * tick, reference, state)
+        done, told = moments(policy)
+        gap_nm[iterations] = np.abs(done - told).max()
+    assert gap_nm[3] < 1.0 < 5.0 < gap_nm[1], gap_nm
 
 
 def test_no_policy_without_a_reference_to_balance():
