@@ -30,13 +30,13 @@ class _Stopwatch:
     """Wall time of each stage of a tick, of one that comes again in all: nothing else in the step reads it."""
 
     def __init__(self) -> None:
-        self.ms: dict[str, float] = {}
-        self._last = perf_counter()
+        self.stage_ms: dict[str, float] = {}
+        self.stage_begun = perf_counter()
 
     def mark(self, stage: str) -> None:
         now = perf_counter()
-        self.ms[stage] = self.ms.get(stage, 0.0) + 1e3 * (now - self._last)
-        self._last = now
+        self.stage_ms[stage] = self.stage_ms.get(stage, 0.0) + 1e3 * (now - self.stage_begun)
+        self.stage_begun = now
 
 
 class Mpc(Component):
@@ -212,7 +212,7 @@ class Mpc(Component):
             solver="ok",
             constraint=tuple(violations),
             violation=np.array(list(violations.values())),
-            stage=tuple(watch.ms),
-            stage_ms=np.array(list(watch.ms.values())),
+            stage=tuple(watch.stage_ms),
+            stage_ms=np.array(list(watch.stage_ms.values())),
         )
         outbox.publish("mpc/policy", policy)

@@ -43,7 +43,7 @@ SCRATCH = {
 """What a class works on within a step and writes before it reads: by attribute, or all of it."""
 
 NO_MEMORY = {
-    *("_events", "stages", "times"),  # of one step
+    *("_events", "stage_ms", "stage_begun"),  # of one step
     *("_solver", "preconditioner_iter", "eps_abs", "eps_rel", "check_duality_gap"),  # PIQP: set up once
     *("_diagonal", "_qp"),  # a view of P; a call
 }
