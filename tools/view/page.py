@@ -25,6 +25,10 @@ from surefoot.tools.view.stage import Stage
 DRAW_HZ = 10.0
 """Pictures a second: enough to follow a step, and a few per cent of a core."""
 
+CORE_SHARE = 0.09
+"""Of a core: where pictures of a run would take more, as on a slow machine, there are fewer of them."""
+
+_SLOWEST_S = 1.0  # from picture to picture all the same
 _NOBODY_S = 0.25  # from look to look while no browser is there
 
 
@@ -35,6 +39,15 @@ def check_port(port: int) -> None:
         CallError: it is taken, or is none.
     """
     listen(port).close()
+
+
+def draw_period_s(used_s: float) -> float:
+    """From one picture of a run to the next [s].
+
+    Args:
+        used_s: processor time of this process from the last picture to this one [s].
+    """
+    return min(max(1.0 / DRAW_HZ, used_s / CORE_SHARE), _SLOWEST_S)
 
 
 def _refuse_strangers(server: viser.ViserServer) -> None:
@@ -84,6 +97,7 @@ class Page:
 
     def run(self, due: Callable[[], bool]) -> None:
         """Draw until `due()`; while no browser looks, only what happens is noted."""
+        used_s = time.process_time()
         while not due():
             begun = time.monotonic()
             if self._controls is not None:
@@ -93,6 +107,9 @@ class Page:
             if watched:
                 self.draw()
             period = 1.0 / DRAW_HZ if watched else _NOBODY_S
+            if watched and self._controls is None:  # a run beside it must not feel it
+                period = draw_period_s(time.process_time() - used_s)
+            used_s = time.process_time()
             time.sleep(max(period - (time.monotonic() - begun), 0.005))
 
     def draw(self) -> None:

@@ -12,7 +12,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from surefoot.tools.cli import main
-from surefoot.tools.view.page import HOST, Page
+from surefoot.tools.view.page import CORE_SHARE, HOST, Page, draw_period_s
 from surefoot.tools.view.recording_source import RecordingSource
 
 PATIENCE_S = 120.0  # of wall time: other jobs share the cores, and no test is decided by it
@@ -35,6 +35,12 @@ def page():
     over.set()
     thread.join()
     page.close()
+
+
+def test_pictures_that_take_much_of_a_core_are_fewer():
+    assert draw_period_s(0.0) == draw_period_s(0.004) == 0.1
+    assert draw_period_s(0.03) == pytest.approx(0.03 / CORE_SHARE)
+    assert draw_period_s(5.0) == 1.0  # a page that has just been opened still shows something
 
 
 def wait(holds):
