@@ -49,7 +49,7 @@ class Mpc(Component):
     name: ClassVar[str] = "mpc"
     inputs: ClassVar[tuple[str, ...]] = ("state/estimate", "fsm/reference", "operator/tuning")
     outputs: ClassVar[tuple[str, ...]] = ("mpc/policy",)
-    memory: ClassVar[Memory] = Memory("_contact", "_before_W", "_t", _iterate=Trajectory)
+    memory: ClassVar[Memory] = Memory("_contact", "_force_before_W", "_t", _iterate=Trajectory)
 
     def __init__(self, deployment: Deployment):
         super().__init__(deployment)
@@ -63,7 +63,7 @@ class Mpc(Component):
         self._height = robot.nominal.leg_height
         self._iterate: Trajectory | None = None
         self._contact: np.ndarray | None = None
-        self._before_W = np.zeros((4, 3))
+        self._force_before_W = np.zeros((4, 3))
         self._t = 0.0
 
     def set_up(self) -> None:
@@ -94,8 +94,8 @@ class Mpc(Component):
         lead = self.deployment.mpc.lead_s
         begins = t + lead
         nodes = self._sampler.sample(reference, begins)
-        acting_W = self._acting(t, reference)
-        measured = self._predict(self.measured(estimate), estimate, acting_W, lead)
+        force_W = self._acting(t, reference)
+        measured = self._predict(self.measured(estimate), estimate, force_W, lead)
         start = self._warm_start(nodes, begins)
         watch.mark("references")
         try:
@@ -104,7 +104,7 @@ class Mpc(Component):
             self._iterate, self.trouble = None, str(error)
             outbox.publish("mpc/policy", Policy(t=begins, dt=self._dt, solver=self.trouble))
             return
-        self._before_W = acting_W if self._iterate is None else self._planned(self._iterate, begins - 1e-6)
+        self._force_before_W = force_W if self._iterate is None else self._planned(self._iterate, begins - 1e-6)
         self._iterate, self._contact, self._t = step.iterate, nodes.contact, begins
         self._publish(begins, nodes, step, watch, outbox)
 
@@ -145,7 +145,7 @@ class Mpc(Component):
             force[stance, 2] = self._mass * GRAVITY / max(int(stance.sum()), 1)
             return force
         share = min(max((self._t - t) / self.deployment.mpc.lead_s, 0.0), 1.0)
-        return share * self._before_W + (1.0 - share) * self._planned(self._iterate, max(t, self._t))
+        return share * self._force_before_W + (1.0 - share) * self._planned(self._iterate, max(t, self._t))
 
     def _planned(self, plan: Trajectory, t: float) -> np.ndarray:
         """(4, 3) forces of the last plan at time t [N]."""

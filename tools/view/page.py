@@ -107,9 +107,9 @@ class Page:
             if watched:
                 self.draw()
             period = 1.0 / DRAW_HZ if watched else _NOBODY_S
+            before_s, used_s = used_s, time.process_time()
             if watched and self._controls is None:  # a run beside it must not feel it
-                period = draw_period_s(time.process_time() - used_s)
-            used_s = time.process_time()
+                period = draw_period_s(used_s - before_s)
             time.sleep(max(period - (time.monotonic() - begun), 0.005))
 
     def draw(self) -> None:
