@@ -48,7 +48,7 @@ def add(commands: argparse._SubParsersAction) -> None:
         "--fresh", action="store_true", help="do seeds again that the folder's results.json has already"
     )
     parser.add_argument(
-        "--record", action="store_true", help="keep a recording of every run in the folder: about 4 MB a second"
+        "--record", action="store_true", help="keep a recording of every run in the folder: about 5 MB a second"
     )
     parser.add_argument("--json", action="store_true", help="print the outcome and the marks for a script")
     parser.set_defaults(run=_run)

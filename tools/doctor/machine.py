@@ -157,7 +157,7 @@ def check_disk(machine: Machine, run: Run, limits: Doctor) -> Finding:
     words = (
         f"{free:.1f} GB free for {run.log_dir}/",
         f"{limits.free_warn_gb:g} GB",
-        "make room, or set run.log_dir: a recording takes 4 MB a second",
+        "make room, or set run.log_dir: a recording takes 5 MB a second",
     )
     return graded("disk", -free, (-limits.free_warn_gb, -limits.free_fail_gb), words)
 

@@ -53,7 +53,7 @@ def cut(
         for track in tracks
         for key, seq in zip(track.checkpoints[0].outputs, track.checkpoints[0].next_seq.tolist(), strict=True)
     }
-    writer = RecordingWriter(out, recording.about | {"how": f"clip of {from_t:g} to {until_t:g} s"})
+    writer = RecordingWriter(out, recording.about | {"how": f"clip of {from_t:g} to {until_t:g} s"}, small=True)
     for track in tracks:
         checkpoint = track.checkpoints[0]
         t_ns = round(checkpoint.t * 1e9)

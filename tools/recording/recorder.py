@@ -215,5 +215,5 @@ def check_space(path: Path) -> str:
         raise RecordingError(f"cannot write {path}: there is no folder {folder}; make it first")
     free = shutil.disk_usage(folder).free
     if free < _FREE_BYTES:
-        return f"only {free / 1e6:.0f} MB free for {path}: a run takes about 4 MB a second"
+        return f"only {free / 1e6:.0f} MB free for {path}: a run takes about 5 MB a second"
     return ""

@@ -22,8 +22,8 @@ def payload(seq):
     return encode(OperatorCommand(t=0.1 * seq, seq=seq, valid=True, command="stand"))
 
 
-def write(path, count, close=True):
-    writer = RecordingWriter(path, ABOUT)
+def write(path, count, close=True, small=False):
+    writer = RecordingWriter(path, ABOUT, small)
     for seq in range(count):
         last = seq == count - 1
         writer.add(Batch("operator", 0, seq, last, [("operator/command", seq * 10**8, seq, payload(seq))]))
@@ -40,6 +40,14 @@ def test_what_was_written_is_read(tmp_path):
     assert [(item.key, item.seq, item.t_ns) for item in items][3] == ("operator/command", 3, 3 * 10**8)
     assert recording.damage == "" and recording.config == {"robot": "aliengo"}
     assert recording.journals == [{"process": "operator", "boot": 0, "batches": 25, "ended": True}]
+
+
+def test_a_small_file_gives_the_same_in_fewer_bytes(tmp_path):
+    write(tmp_path / "a.mcap", 25)
+    write(tmp_path / "small.mcap", 25, small=True)
+    small = Recording(tmp_path / "small.mcap")
+    assert [item.payload for item in small] == [item.payload for item in Recording(tmp_path / "a.mcap")]
+    assert small.path.stat().st_size < (tmp_path / "a.mcap").stat().st_size
 
 
 def test_a_file_that_was_not_closed_gives_all_that_was_flushed(tmp_path):
