@@ -111,12 +111,12 @@ class RecordingIndex:
         with self.path.open("rb") as file:
             return [journal_end(each) for each in make_reader(file).iter_metadata() if each.name == BATCH]
 
-    def messages(self, key: str, first_ns: int = 0, last_ns: int = 1 << 63) -> Iterator[Recorded]:
-        """The messages of a topic between two times [ns], in the order in which they were written.
+    def messages(self, *keys: str, first_ns: int = 0, last_ns: int = 1 << 63) -> Iterator[Recorded]:
+        """The messages of some topics between two times [ns], in the order in which they were written.
 
         Where the file is damaged they end, and `damage` says so.
         """
-        wanted, parts = self._numbers(key), self.parts(key)
+        wanted, parts = self._topics(*keys), self.parts(*keys)
         with self.path.open("rb") as file:
             if 2 * len(parts) < len(self._map.parts):  # else the system reads ahead what lies between them
                 os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_RANDOM)
@@ -129,13 +129,13 @@ class RecordingIndex:
                     begin = part.first_ns / 1e9
                     self.damage = f"it cannot be read from {begin:.3f} s on ({type(error).__name__}: {error})"
                     return
-                for _, seq, t_ns, payload in _messages(data, wanted):
+                for number, seq, t_ns, payload in _messages(data, wanted):
                     if first_ns <= t_ns <= last_ns:
-                        yield Recorded(key, t_ns, seq, payload)
+                        yield Recorded(wanted[number], t_ns, seq, payload)
 
-    def parts(self, key: str) -> list[Part]:
-        """Where messages of a topic are, in the order in which they were written."""
-        wanted = self._numbers(key)
+    def parts(self, *keys: str) -> list[Part]:
+        """Where messages of some topics are, in the order in which they were written."""
+        wanted = self._topics(*keys).keys()
         return [part for part in self._map.parts if not wanted.isdisjoint(part.channels)]
 
     def unpack(self, part: Part) -> list[Recorded]:
@@ -144,7 +144,7 @@ class RecordingIndex:
         Raises:
             RecordingError: it cannot be read.
         """
-        topics = {n: each.topic for n, each in self._map.channels.items() if each.message_encoding != DIGEST}
+        topics = self._topics(*self.counts)
         try:
             with self.path.open("rb") as file:
                 data = _unpacked(file, part)
@@ -154,12 +154,12 @@ class RecordingIndex:
 
     # How it is found ------------------------------------------------------------------------------------
 
-    def _numbers(self, key: str) -> set[int]:
-        """Channels that hold the messages of a topic."""
+    def _topics(self, *keys: str) -> dict[int, str]:
+        """Channels that hold the messages of some topics, and of which."""
         return {
-            number
+            number: channel.topic
             for number, channel in self._map.channels.items()
-            if channel.topic == key and channel.message_encoding != DIGEST
+            if channel.topic in keys and channel.message_encoding != DIGEST
         }
 
     def _counts(self, digests: bool) -> dict[str, int]:

@@ -16,10 +16,10 @@ _VIEW = """\
 Show a running stack in a browser, or a recording with its time in your hand: the robot, the terrain and the map,
 footholds with what was found of them, forces asked and measured, support polygon, planned swing and horizon.
 
-The view is a process of its own. It keeps of each stream the newest message, draws ten times a second with the
-lowest priority, and may be closed, or killed, at any time: the robot does not notice. When a run ends, its last
-picture stays and the next run is shown as soon as it is there. Beside the picture a running robot is commanded,
-and its settings are tuned.
+The view is a process of its own. Of a run it keeps the newest message of each stream, draws ten times a second
+with the lowest priority, and may be closed, or killed, at any time: the robot does not notice. When a run ends,
+its last picture stays and the next run is shown as soon as it is there. Beside the picture a running robot is
+commanded, and its settings are tuned.
 
 The page is served to this machine alone. From another one: ssh -L 8080:127.0.0.1:8080 ROBOT
 
@@ -79,7 +79,7 @@ def _run(call: argparse.Namespace) -> int:
         source = RecordingSource(call.recording, call.from_t)
     else:
         source = BusSource(lambda: open_bus(call), call.wait)
-    os.nice(_LOWEST - os.nice(0))
+        os.nice(_LOWEST - os.nice(0))
     end = ProcessEnd(call.parent)
     page = Page(source, call.port)
     if source.words:

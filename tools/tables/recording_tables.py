@@ -192,4 +192,4 @@ class RecordingTables(Mapping[str, Table]):
     def _items(self, key: str, begin_s: float, end_s: float) -> Iterator[Recorded]:
         first = 0 if begin_s <= 0.0 else round(begin_s * 1e9)
         last = 1 << 63 if end_s == float("inf") else round(end_s * 1e9)
-        return self._index.messages(key, first, last)
+        return self._index.messages(key, first_ns=first, last_ns=last)

@@ -96,7 +96,11 @@ class Page:
         self._focus = np.zeros(3)
 
     def run(self, due: Callable[[], bool]) -> None:
-        """Draw until `due()`; while no browser looks, only what happens is noted."""
+        """Draw until `due()`; while no browser looks, only what happens is noted.
+
+        What stands still is built before there is a browser: it is ready by the time that one has come up.
+        """
+        self._follow_deployment()
         used_s = time.process_time()
         while not due():
             begun = time.monotonic()

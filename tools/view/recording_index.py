@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from functools import lru_cache
 from itertools import accumulate
 from operator import attrgetter
@@ -59,16 +59,20 @@ class RecordingIndex:
         Raises:
             RecordingError: what lies there cannot be read.
         """
-        t_ns = round(t * 1e9)
+        t_ns = _ns(t)
         for number in reversed(range(bisect_right(self._begins.get(key, []), t_ns))):
             there = self._held(self._parts[key][number]).get(key, [])
             if place := bisect_right(there, t_ns, key=attrgetter("t_ns")):
                 return self._decoded(there[place - 1])
         return None
 
-    def messages(self, key: str) -> Iterator[Message]:
-        """All messages of a topic in the order of the file; where it is damaged they end, and `damage` says so."""
-        return map(_decode, self._index.messages(key))
+    def messages(self, *keys: str, after_t: float, until_t: float) -> list[tuple[float, Message]]:
+        """By time, with its time, each message of some topics that was published after one until another [s].
+
+        Where the file is damaged they end, and `damage` says so.
+        """
+        items = self._index.messages(*keys, first_ns=_ns(after_t) + 1, last_ns=_ns(until_t))
+        return [(item.t_ns / 1e9, _decode(item)) for item in sorted(items, key=attrgetter("t_ns"))]
 
     def _hold(self, part: index.Part) -> dict[str, list[Recorded]]:
         """The messages of a part by topic."""
@@ -82,6 +86,10 @@ def _earliest_from(parts: list[index.Part]) -> list[int]:
     """Of each part the first time in it or in a later one [ns]; processes hand in what they did at other times."""
     firsts = (part.first_ns for part in reversed(parts))
     return list(accumulate(firsts, min))[::-1]
+
+
+def _ns(t: float) -> int:
+    return round(t * 1e9)
 
 
 def _decode(item: Recorded) -> Message:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import time
 from bisect import bisect_right
+from operator import itemgetter
 from pathlib import Path
 
 from surefoot.bus.errors import MessageError, RecordingError
+from surefoot.bus.message import Message
 from surefoot.bus.messages import FsmEvent
 from surefoot.tools.picture import Picture
 from surefoot.tools.recording.replay import recorded_deployment
@@ -16,6 +18,8 @@ from surefoot.tools.view.recording_index import RecordingIndex
 
 _VERDICTS = ("collapse", "late_collapse", "accepted", "rejected")
 """Events worth leaping to."""
+
+_AHEAD_S = 10.0  # of the run
 
 
 class RecordingSource:
@@ -45,12 +49,9 @@ class RecordingSource:
         self.deployment, unknown = recorded_deployment(index.recording)
         self.title = f"Surefoot, {path.name}"
         self.begin_t, self.end_t = index.begin_t, index.end_t
-        self._rare = sorted((each for key in RARE for each in index.messages(key)), key=lambda each: each.t)
-        self._rare_t = [each.t for each in self._rare]
-        self._notes = (
-            [f"the file is incomplete: {index.damage}; up to its end it can be read"] if index.damage else []
-        )
-        self._notes += [f"{key}: unknown to this version, left out" for key in unknown]
+        self._rare: list[tuple[float, Message]] = []
+        self._known_t = self.begin_t - _AHEAD_S
+        self._notes = [f"{key}: unknown to this version, left out" for key in unknown]
         self._told = 0
         self.heard = Heard()
         self.playing, self.speed = True, 1.0
@@ -61,7 +62,9 @@ class RecordingSource:
     @property
     def words(self) -> str:
         """What is wrong with the file; empty when nothing is."""
-        return "; ".join(self._notes)
+        damage = self._index.damage
+        incomplete = [f"the file is incomplete: {damage}; up to its end it can be read"] if damage else []
+        return "; ".join(incomplete + self._notes)
 
     def look(self) -> None:
         """Go on, if it plays."""
@@ -84,19 +87,35 @@ class RecordingSource:
 
     def leap(self, ahead: bool) -> None:
         """To the next verdict on a foothold, or to the one before."""
-        times = [each.t for each in self._rare if isinstance(each, FsmEvent) and each.kind in _VERDICTS]
-        place = bisect_right(times, self.t) if ahead else bisect_right(times, self.t - 1e-6) - 1
-        if 0 <= place < len(times):
-            self.seek(times[place])
+        if not ahead:
+            for t in [each for each in self._verdicts() if each < self.t][-1:]:
+                self.seek(t)
+            return
+        while not (later := [each for each in self._verdicts() if each > self.t]) and self._known_t < self.end_t:
+            self._know(self._known_t)
+        for t in later[:1]:
+            self.seek(t)
 
     def close(self) -> None:
         """Nothing is held."""
 
+    def _verdicts(self) -> list[float]:
+        """When there was one, of those that are known [s]."""
+        return [t for t, each in self._rare if isinstance(each, FsmEvent) and each.kind in _VERDICTS]
+
+    def _know(self, t: float) -> None:
+        """Read what is rare until a time [s] and somewhat beyond; the whole of a long file would take a second."""
+        if t >= self._known_t:
+            until = t + _AHEAD_S
+            self._rare += self._index.messages(*RARE, after_t=self._known_t, until_t=until)
+            self._known_t = until
+
     def _tell(self) -> None:
         """The history up to now; time that went back is told anew."""
-        until = bisect_right(self._rare_t, self.t)
+        self._know(self.t)
+        until = bisect_right(self._rare, self.t, key=itemgetter(0))
         if until < self._told:
             self.heard.history, self._told = History(), 0
-        for message in self._rare[self._told : until]:
+        for _, message in self._rare[self._told : until]:
             self.heard.history.note(message)
         self._told = until

@@ -6,14 +6,13 @@ from collections.abc import Callable, Collection
 from typing import Any
 
 import numpy as np
-import trimesh
 import viser
 
-from surefoot.tools.view.drawing import Arrows, Drawing, Item, Kind, Lines, Mesh, Shapes, Words
+from surefoot.tools.view.drawing import Arrows, Drawing, Item, Lines, Mesh, Shapes, Words
+from surefoot.tools.view.unit_shapes import unit_shape
 
 _WORLD = "/world"
 _MORE = 1.5  # room for more copies of a shape is made by this factor
-_FACETS = 24
 _AMBIENT = 0.9
 _FOG_M = (4.0, 14.0)
 _CAMERA_M, _LOOK_AT_M = (0.75, -1.15, 0.6), (0.15, 0.0, 0.15)
@@ -135,18 +134,16 @@ def _filled(rows: np.ndarray, room: int, unit: bool = False) -> np.ndarray:
 
 
 def _add_shapes(scene: viser.SceneApi, name: str, item: Shapes, room: int) -> Any:
-    mesh = _UNIT[item.kind]()
+    vertices, faces = unit_shape(item.kind)
     return scene.add_batched_meshes_simple(
         name,
-        mesh.vertices,
-        mesh.faces,
+        vertices,
+        faces,
         _filled(item.quat_W, room, unit=True),
         _filled(item.p_W, room),
         batched_scales=_filled(item.size_m, room),
         batched_colors=_filled(item.rgb, room).astype(np.uint8),
         opacity=item.opacity if item.opacity < 1.0 else None,
-        flat_shading=item.kind in ("box", "cylinder", "square"),
-        side="double" if item.kind in ("cone", "square") else "front",
         lod="off",
         cast_shadow=False,
         receive_shadow=False,
@@ -183,28 +180,6 @@ def _add_arrows(scene: viser.SceneApi, name: str, item: Arrows, room: int) -> An
 def _add_words(scene: viser.SceneApi, name: str, item: Words, room: int) -> Any:
     return scene.add_label(name, item.text, position=item.p_W, font_screen_scale=0.8, anchor="bottom-center")
 
-
-def _cone() -> trimesh.Trimesh:
-    """Standing on its tip."""
-    mesh = trimesh.creation.cone(radius=0.5, height=1.0, sections=_FACETS)
-    mesh.vertices[:, 2] = 1.0 - mesh.vertices[:, 2]
-    mesh.invert()
-    return mesh
-
-
-def _square() -> trimesh.Trimesh:
-    return trimesh.Trimesh(
-        [[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.5, 0.0], [-0.5, 0.5, 0.0]], [[0, 1, 2], [0, 2, 3]]
-    )
-
-
-_UNIT: dict[Kind, Callable[[], trimesh.Trimesh]] = {
-    "box": lambda: trimesh.creation.box((1.0, 1.0, 1.0)),
-    "cylinder": lambda: trimesh.creation.cylinder(radius=0.5, height=1.0, sections=_FACETS),
-    "sphere": lambda: trimesh.creation.icosphere(subdivisions=2, radius=0.5),
-    "cone": _cone,
-    "square": _square,
-}
 
 _MAKE: dict[type, Callable[[viser.SceneApi, str, Any, int], Any]] = {
     Shapes: _add_shapes,

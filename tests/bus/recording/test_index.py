@@ -29,11 +29,17 @@ def test_a_topic_holds_what_reading_the_whole_file_gives():
     assert list(index.messages("hw/depth")) == []
 
 
+def test_some_topics_together_come_in_the_order_of_the_file():
+    keys = ("fsm/event", "hw/state", "joint/command")
+    expected = [item for item in Recording(CLIP) if item.key in keys and not item.digest]
+    assert list(RecordingIndex(CLIP).messages(*keys)) == expected and len({item.key for item in expected}) > 1
+
+
 def test_a_stretch_of_time_is_read_alone():
     index = RecordingIndex(CLIP)
     begin, end = 23_400_000_000, 23_500_000_000
     inside = [item for item in index.messages("hw/state") if begin <= item.t_ns <= end]
-    assert len(inside) == 51 and list(index.messages("hw/state", begin, end)) == inside
+    assert len(inside) == 51 and list(index.messages("hw/state", first_ns=begin, last_ns=end)) == inside
     assert index.span_ns == (21_202_000_000, 23_940_000_000)
 
 
