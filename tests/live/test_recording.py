@@ -9,12 +9,9 @@ import time
 
 import pytest
 
-from surefoot.bus.codec import decode
-from surefoot.bus.recording.reader import Recording
-from surefoot.bus.topics import PROCESSES, TOPICS
+from surefoot.bus.topics import PROCESSES
 from surefoot.tools.recording.clip import REMEMBER
 from surefoot.tools.recording.contents import Contents
-from surefoot.tools.recording.playback import playback
 from surefoot.tools.recording.replay import replay
 
 RECORD = [sys.executable, "-P", "-m", "surefoot.tools.cli", "record"]
@@ -23,8 +20,8 @@ RECORD = [sys.executable, "-P", "-m", "surefoot.tools.cli", "record"]
 class Recorder:
     """`surefoot record` on a stack."""
 
-    def __init__(self, live, folder, bytes_most=None):
-        self.path, self._live, output = folder / "out.mcap", live, folder / "recorder.log"
+    def __init__(self, live, folder, name="out", bytes_most=None):
+        self.path, output = folder / f"{name}.mcap", folder / f"{name}.log"
 
         def limit():
             if bytes_most is not None:
@@ -49,8 +46,8 @@ def recorder(tmp_path):
     """Makes a `Recorder`."""
     made = []
 
-    def make(live, **limits):
-        made.append(Recorder(live, tmp_path, **limits))
+    def make(live, **settings):
+        made.append(Recorder(live, tmp_path, **settings))
         return made[-1]
 
     yield make
@@ -106,10 +103,11 @@ def test_a_recorder_that_comes_late_and_stops_early_is_whole_in_between(stack, r
     assert live.stands()
 
 
-def test_a_recorder_that_is_killed_leaves_all_but_the_last_second(stack, recorder):
+def test_of_two_recorders_one_is_killed_and_one_finds_the_disk_full_and_the_run_goes_on(stack, recorder):
     live = stack(leave_out=("trajopt",))
     live.begin(b"stand")
     live.wait(lambda: live.t() > 0.2)
+    full = recorder(live, name="full", bytes_most=1_000_000)
     taken = recorder(live)
     live.go_on(1.5)
     taken.process.kill()
@@ -122,19 +120,11 @@ def test_a_recorder_that_is_killed_leaves_all_but_the_last_second(stack, recorde
     pace = 0.5 / (time.monotonic() - begun)  # seconds of the run for each on the wall
     assert contents.topics["hw/state"].last_t > killed - max(pace, 1.0)
     assert not [gap for gap in contents.gaps if "messages are missing" in gap]
-    assert live.stands()
-
-
-def test_a_full_disk_ends_the_recording_and_not_the_run(stack, recorder):
-    live = stack(leave_out=("trajopt",))
-    live.begin(b"stand")
-    live.wait(lambda: live.t() > 0.2)
-    taken = recorder(live, bytes_most=1_000_000)
-    live.wait(lambda: taken.process.poll() is not None)
-    assert taken.process.returncode == 1
-    assert "recording ended" in taken.said() and "the run goes on without it" in taken.said()
-    assert sum(topic.messages for topic in Contents(taken.path).topics.values()) > 10
-    live.go_on(0.5)
+    live.wait(lambda: full.process.poll() is not None)
+    assert full.process.returncode == 1
+    assert "recording ended" in full.said() and "the run goes on without it" in full.said()
+    assert sum(topic.messages for topic in Contents(full.path).topics.values()) > 10
+    live.go_on(0.1)
     assert live.stands()
 
 
@@ -154,18 +144,3 @@ def test_a_process_that_is_killed_takes_only_its_last_moment_with_it(stack, reco
     result = replay(taken.path, ("wbc", "estimator"))
     assert all(topic.differing == 0 for topic in result.comparison.topics.values())
     assert result.steps["wbc"] > 200
-
-
-def test_a_recording_is_played_back_on_a_bus(stack, recorder, tmp_path):
-    live = stack(leave_out=("trajopt",))
-    live.begin(b"stand")
-    live.wait(lambda: live.t() > 0.2)
-    taken = recorder(live)
-    live.go_on(0.5)
-    assert taken.end() == 0
-    end_stack(live)
-    published = [item for item in Recording(taken.path) if item.key in TOPICS]
-    said = []
-    sent = playback(taken.path, f"{live.namespace}-again", 4.0, float("-inf"), float("inf"), said.append)
-    assert sent == len(published) and f"played {sent} messages" in said[-1]
-    assert decode(TOPICS["hw/state"].message, next(i.payload for i in published if i.key == "hw/state")).valid

@@ -23,16 +23,6 @@ def test_every_process_but_io_is_restarted_while_the_robot_stands(supervised):
     assert not any(status.bad_messages for status in live.status.values())
 
 
-def test_a_controller_is_restarted_while_a_foot_is_in_the_air(supervised):
-    live = supervised("run.command=forward")
-    live.wait(lambda: live.t() > 2.0 and live.last("fsm/reference").state == "DETECT_CONTACT")
-    for name in ("wbc", "fsm"):
-        live.command("restart", name)
-        live.wait(lambda name=name: live.boot(name) == 1)
-    live.wait(lambda: live.last("fsm/reference").state == "PROBE")  # nothing has been forgotten
-    assert live.stands() and live.last("fsm/reference").boot == 1
-
-
 def test_a_process_that_crashes_is_restarted_three_times_and_then_ends_the_run(supervised):
     live = supervised("run.command=stand")
     live.wait(lambda: live.t() > 0.3)
