@@ -81,8 +81,7 @@ class RecordingSource:
             for name, key in STREAMS.items():
                 self.heard.note(name, self._index.newest(key, self.t))
         except (RecordingError, MessageError) as error:
-            if str(error) not in self._notes:
-                self._notes.append(str(error))
+            self._note(error)
         self._tell()
 
     def leap(self, ahead: bool) -> None:
@@ -105,10 +104,18 @@ class RecordingSource:
 
     def _know(self, t: float) -> None:
         """Read what is rare until a time [s] and somewhat beyond; the whole of a long file would take a second."""
-        if t >= self._known_t:
-            until = t + _AHEAD_S
-            self._rare += self._index.messages(*RARE, after_t=self._known_t, until_t=until)
-            self._known_t = until
+        if t < self._known_t:
+            return
+        after_t, self._known_t = self._known_t, t + _AHEAD_S
+        try:
+            self._rare += self._index.messages(*RARE, after_t=after_t, until_t=self._known_t)
+        except MessageError as error:
+            self._note(error)
+
+    def _note(self, error: Exception) -> None:
+        """Tell it, once."""
+        if str(error) not in self._notes:
+            self._notes.append(str(error))
 
     def _tell(self) -> None:
         """The history up to now; time that went back is told anew."""

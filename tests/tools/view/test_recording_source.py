@@ -8,6 +8,7 @@ from surefoot.bus.codec import decode, encode
 from surefoot.bus.errors import RecordingError
 from surefoot.bus.recording.index import RecordingIndex as Index
 from surefoot.bus.recording.reader import Recording
+from surefoot.bus.recording.writer import RecordingWriter
 from surefoot.bus.topics import TOPICS
 from surefoot.tools.cli import main
 from surefoot.tools.view.history import RARE
@@ -109,3 +110,17 @@ def test_it_plays_to_its_end_and_rests_there():
     source.look()
     source.look()
     assert source.t == source.end_t and not source.playing
+
+
+def test_an_event_that_cannot_be_read_is_told_and_the_rest_is_shown(tmp_path):
+    path, recording = tmp_path / "odd.mcap", Recording(CLIP)
+    writer = RecordingWriter(path, recording.about)
+    for item in recording:
+        payload = b"\x00" if item.key == "fsm/event" else item.payload
+        if not item.digest:
+            writer.add_record((item.key, item.t_ns, item.seq, payload))
+    writer.close()
+    source = RecordingSource(path)
+    source.seek(source.end_t)
+    source.leap(ahead=True)
+    assert source.heard.estimate is not None and "FsmEvent" in source.words
