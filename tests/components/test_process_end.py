@@ -14,7 +14,8 @@ try:
     while not end.due:
         time.sleep(0.01)
     print("due", flush=True)
-    time.sleep(600)  # a step that hangs
+    for _ in range(60_000):  # a step that hangs; a signal just before one long sleep would wait for its end
+        time.sleep(0.01)
 except KeyboardInterrupt:
     print("broken off", flush=True)
 """
