@@ -7,8 +7,7 @@ import time
 
 from surefoot.bus.messages import ProcessStatus
 from surefoot.bus.topics import TOPICS
-from surefoot.components.fsm.walk_commands import PAUSED
-from surefoot.components.fsm.words import is_direction
+from surefoot.components.fsm.words import PAUSED, is_direction
 from surefoot.tools.picture import Picture, Watched
 
 SILENT_S = 3.0

@@ -9,10 +9,7 @@ from __future__ import annotations
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.fsm.probing_cycle import ProbingCycle
 from surefoot.components.fsm.state import State
-from surefoot.components.fsm.words import Answer, refused, taken
-
-PAUSED = "commanded pause"
-"""Why a walk rests that can go on; in the reference, and on every screen."""
+from surefoot.components.fsm.words import PAUSED, Answer, refused, taken
 
 _HALTED = "commanded halt"
 

@@ -34,6 +34,9 @@ COMMANDS = tuple(MEANINGS)
 WALK_WORDS = ("halt", "pause", "resume", "step", "skip", "reprobe")
 """Of a robot that walks, or rests on its walk."""
 
+PAUSED = "commanded pause"
+"""Why a walk rests that can go on; in the reference, and on every screen."""
+
 LEAST_LENGTH = 0.1
 """Of a direction: a shorter one is rather a slip of the hand than a wish."""
 

@@ -19,7 +19,7 @@ from websockets.sync.server import ServerConnection, serve
 
 from surefoot.bus.session import Session
 from surefoot.components.deployment_desk import ask_deployment
-from surefoot.components.fsm.walk_commands import PAUSED
+from surefoot.components.fsm.words import PAUSED
 from surefoot.config.operator import Operator
 from surefoot.config.robot import LEGS
 from surefoot.config.typed_toml import build

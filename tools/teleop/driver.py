@@ -11,8 +11,7 @@ from rich.live import Live
 
 from surefoot.bus.session import Session
 from surefoot.components.deployment_desk import ask_deployment
-from surefoot.components.fsm.walk_commands import PAUSED
-from surefoot.components.fsm.words import Answer
+from surefoot.components.fsm.words import PAUSED, Answer
 from surefoot.tools.stack_watch import StackWatch
 from surefoot.tools.teleop.candidates import Candidates
 from surefoot.tools.teleop.drive_screen import SURE_TO_CUT, Said, drive_screen

@@ -6,6 +6,8 @@ import time
 from collections.abc import Callable
 from contextlib import redirect_stdout
 from io import StringIO
+from threading import Event
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 import numpy as np
@@ -15,12 +17,15 @@ from viser.infra import WebsockClientConnection
 from surefoot.config.deployment import Deployment
 from surefoot.tools.loopback import HOST, NAMES, listen
 from surefoot.tools.view.bus_source import BusSource
+from surefoot.tools.view.layers import LAYERS
 from surefoot.tools.view.panel import Panel
 from surefoot.tools.view.playback_controls import PlaybackControls
 from surefoot.tools.view.recording_source import RecordingSource
-from surefoot.tools.view.scene import LAYERS, Scene
 from surefoot.tools.view.source import Source
 from surefoot.tools.view.stage import Stage
+
+if TYPE_CHECKING:
+    from surefoot.tools.view.scene import Scene
 
 DRAW_HZ = 10.0
 """Pictures a second: enough to follow a step, and a few per cent of a core."""
@@ -63,6 +68,13 @@ def _refuse_strangers(server: viser.ViserServer) -> None:
     sockets.on_client_connect(look_at)
 
 
+def _scene(deployment: Deployment) -> Scene:
+    """The scene, whose libraries are loaded only here: the page is served by then, and a browser on its way."""
+    from surefoot.tools.view.scene import Scene
+
+    return Scene(deployment)
+
+
 class Page:
     """What a browser shows of a source.
 
@@ -86,6 +98,8 @@ class Page:
             check_port(port)
         self.url = f"http://{HOST}:{self._server.get_port()}"
         _refuse_strangers(self._server)
+        self._looked_at = Event()
+        self._server.on_client_connect(lambda client: self._looked_at.set())
         gui = self._server.gui
         gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
         self.stage = Stage(self._server, LAYERS)
@@ -114,7 +128,11 @@ class Page:
             before_s, used_s = used_s, time.process_time()
             if watched and self._controls is None:  # a run beside it must not feel it
                 period = draw_period_s(used_s - before_s)
-            time.sleep(max(period - (time.monotonic() - begun), 0.005))
+            rest_s = max(period - (time.monotonic() - begun), 0.005)
+            if watched:
+                time.sleep(rest_s)
+            elif self._looked_at.wait(rest_s):  # a browser has come: what it shows first is not to wait
+                self._looked_at.clear()
 
     def draw(self) -> None:
         """One picture."""
@@ -141,7 +159,7 @@ class Page:
         if self._source.deployment is not self._deployment:
             self._deployment = self._source.deployment
             self.stage.clear()
-            self._scene = Scene(self._deployment) if self._deployment is not None else None
+            self._scene = _scene(self._deployment) if self._deployment is not None else None
             self._server.gui.set_panel_label(self._source.title)
 
     def _pace(self) -> str:

@@ -12,7 +12,7 @@ from surefoot.tools.picture import Picture
 from surefoot.tools.view import panel_text
 from surefoot.tools.view.bus_source import BusSource
 from surefoot.tools.view.heard import Heard
-from surefoot.tools.view.scene import LAYERS
+from surefoot.tools.view.layers import LAYERS
 from surefoot.tools.view.settings_watch import SettingsWatch
 from surefoot.tools.view.stage import Stage
 from surefoot.tools.view.teleop_panel import TeleopPanel

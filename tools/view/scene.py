@@ -20,23 +20,6 @@ from surefoot.tools.view.robot_shapes import RobotShapes
 from surefoot.tools.view.support import draw_support
 from surefoot.tools.view.terrain_shapes import TerrainShapes
 
-LAYERS = {
-    "robot": "robot",
-    "terrain": "terrain as simulated",
-    "map": "elevation map",
-    "loads": "load-bearing layer",
-    "footholds": "footholds and verdicts",
-    "candidates": "candidates",
-    "forces": "forces",
-    "envelope": "force envelope",
-    "cone": "friction cones",
-    "support": "support polygon",
-    "com": "centre of mass",
-    "swing": "planned swing",
-    "horizon": "MPC horizon",
-}
-"""Layers in the order of the panel, with their names there."""
-
 _STALE_S = 0.3  # what is older belongs to no picture of now
 
 

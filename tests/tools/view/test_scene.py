@@ -8,10 +8,11 @@ from surefoot.bus.messages import ElevationGrid, MotionReference, SimTruth, Stat
 from surefoot.config.deployment import load_deployment
 from surefoot.tools.view.drawing import Arrows, Shapes
 from surefoot.tools.view.heard import Heard
+from surefoot.tools.view.layers import LAYERS
 from surefoot.tools.view.map_tiles import draw_map
 from surefoot.tools.view.palette import FORCE_M_PER_N, VERDICT_RGB, Verdict
 from surefoot.tools.view.recording_source import RecordingSource
-from surefoot.tools.view.scene import LAYERS, Scene
+from surefoot.tools.view.scene import Scene
 from surefoot.tools.view.terrain_shapes import TerrainShapes
 
 PROBES_T, FALLS_T = 23.1, 23.18  # of the clip
