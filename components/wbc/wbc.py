@@ -12,7 +12,7 @@ from surefoot.components.component import Component, Inbox, Outbox
 from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.components.memory import Memory
 from surefoot.components.robot_model import LegKinematics
-from surefoot.components.robot_model.rotation import log_rotation, matrix_of
+from surefoot.components.robot_model.rotation import cross, log_rotation, matrix_of
 from surefoot.components.wbc.base_target import BaseTarget, Target, static_loads
 from surefoot.components.wbc.momentum_observer import MomentumObserver
 from surefoot.components.wbc.whole_body_qp import QpFailed, Task, WholeBodyQp
@@ -241,7 +241,7 @@ class Wbc(Component):
     def _still_feet(self, estimate: StateEstimate, R: np.ndarray) -> np.ndarray:
         """Joint velocities (12,) [rad/s] that keep the feet still in the world while the base moves."""
         p_BF = (estimate.p_WF - estimate.p_WB) @ R
-        carried = R.T @ estimate.v_WB_W + np.cross(estimate.omega_WB_B, p_BF)
+        carried = R.T @ estimate.v_WB_W + cross(estimate.omega_WB_B, p_BF)
         J = self._legs.jacobian(estimate.q.reshape(4, 3))
         damped = J @ J.swapaxes(1, 2) + 1e-4 * np.eye(3)
         return -(J.swapaxes(1, 2) @ np.linalg.solve(damped, carried[..., None])).ravel()
@@ -262,7 +262,7 @@ class Wbc(Component):
         length = float(np.sqrt(acceleration @ acceleration))
         acceleration = acceleration * min(1.0, settings.swing_acceleration_max / max(length, 1e-9))
         J = self._legs.jacobian(q)[leg]
-        carried = estimate.v_WB_W + R @ np.cross(estimate.omega_WB_B, p_BF[leg])
+        carried = estimate.v_WB_W + R @ cross(estimate.omega_WB_B, p_BF[leg])
         dq = np.linalg.solve(J @ J.T + 1e-4 * np.eye(3), (v - carried) @ R)
         return acceleration, q[leg], J.T @ dq
 

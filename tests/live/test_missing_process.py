@@ -12,14 +12,10 @@ from surefoot.tools.diagnosis import why_nothing_moves
 from surefoot.tools.stack_watch import StackWatch
 
 
-def test_a_missing_process_is_named(stack):
+def test_time_waits_for_a_process_that_is_missing_or_gone_and_goes_on_with_the_next(stack):
     live = stack(leave_out=("trajopt",))
     live.wait(lambda: "waiting for trajopt to come up" in live.reason("io"))
     assert live.t() == -1.0
-
-
-def test_time_waits_for_a_process_that_is_gone_and_goes_on_with_the_next(stack):
-    live = stack(leave_out=("trajopt",))
     live.begin(b"stand")
     live.wait(lambda: live.t() >= 0.6)
     live.children["mpc"].kill()

@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.components.robot_model.rotation import matrix_of_rpy, nearer_way
+from surefoot.components.robot_model.rotation import cross, matrix_of_rpy, nearer_way
 from surefoot.components.robot_model.rotations import (
     exp_rotations,
     exp_rotations_and_jacobians,
@@ -41,3 +41,10 @@ def test_roll_pitch_yaw_of_one_and_of_many():
 def test_a_change_of_angle_goes_the_nearer_way_and_a_small_one_stays_what_it_is_to_the_bit():
     assert nearer_way(np.array([0.3, -3.1, 0.1 + 0.2])).tolist() == [0.3, -3.1, 0.1 + 0.2]
     np.testing.assert_allclose(nearer_way(np.array([2.0 * np.pi - 0.02, 0.02 - 2.0 * np.pi])), [-0.02, 0.02])
+
+
+def test_the_vector_product_is_that_of_numpy_to_the_bit():
+    a, b = np.random.default_rng(0).normal(size=(2, 30, 3))
+    np.testing.assert_array_equal(cross(a, b), np.cross(a, b))
+    np.testing.assert_array_equal(cross(a[0], b), np.cross(a[0], b))
+    np.testing.assert_array_equal(cross(a, b[0]), np.cross(a, b[0]))
