@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from surefoot.bus.messages import LegStatus, MotionReference, StateEstimate
+from surefoot.bus.messages import MotionReference, StateEstimate
 from surefoot.components.elevation_map.torus import Torus
+from surefoot.components.footing import is_trusted
 
 _FEET_LEAST = 2
 """One foot alone may have sunk with its ground."""
@@ -27,7 +28,7 @@ def height_drift(
     """
     if reference is None:
         return None
-    standing = (reference.leg_status == LegStatus.STANCE) & estimate.contact
+    standing = is_trusted(reference.leg_status) & estimate.contact
     ground = estimate.p_WF[standing] - foot_radius_m * estimate.normal_W
     off = []
     for p_W in ground:

@@ -8,6 +8,8 @@ import pinocchio as pin
 from surefoot.components.robot_model import build_model
 from surefoot.config.robot import Robot
 
+_DAMPING = 1e-9 * np.eye(3)  # [m^2]
+
 
 class ContactForce:
     """f_i = -(J_i^T)^-1 (tau_i - h_i), eq. (7), quasi-static, with the joints' identified friction in h_i.
@@ -48,4 +50,4 @@ class ContactForce:
         Jt = J_B.transpose(0, 2, 1)
         right = (bias - tau).reshape(4, 3, 1)
         # Damped least squares: exact to 1e-6 in any posture short of a straight leg.
-        return np.linalg.solve(J_B @ Jt + 1e-9 * np.eye(3), J_B @ right)[..., 0]
+        return np.linalg.solve(J_B @ Jt + _DAMPING, J_B @ right)[..., 0]

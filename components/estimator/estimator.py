@@ -13,6 +13,7 @@ from surefoot.components.estimator.contact_aided_filter import ContactAidedFilte
 from surefoot.components.estimator.contact_detector import ContactDetector
 from surefoot.components.estimator.contact_force import ContactForce
 from surefoot.components.estimator.surface_normal import SurfaceNormal
+from surefoot.components.footing import is_firm, is_probing
 from surefoot.components.memory import Memory
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotation import cross, exp_rotation, quaternion_of, skew
@@ -100,9 +101,8 @@ class Estimator(Component):
         self._last_t = state.t
         contact, force_W = self._contacts(state, J_B)
         status = reference.leg_status if reference is not None else np.full(4, LegStatus.STANCE)
-        probing = status == LegStatus.PROBING
-        stance = contact & ((status == LegStatus.STANCE) | probing)
-        rate = np.where(probing, self._settings.probing_rate, self._settings.stance_rate)
+        stance = contact & is_firm(status)
+        rate = np.where(is_probing(status), self._settings.probing_rate, self._settings.stance_rate)
         self._filter.update(p_BF, J_B, stance, rate, dt, self._rolling(q, dq))
         if (state.damping or _at_rest(reference)) and not stance.any() and self._lies_still(state):
             self._filter.rest()

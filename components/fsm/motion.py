@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surefoot.bus.messages import ControlMode, LegStatus, MotionReference
+from surefoot.components.footing import is_firm, is_sinking, is_trusted
 from surefoot.components.fsm.observation import Observation
 from surefoot.components.memory import Memory
 from surefoot.config.fsm import Fsm
@@ -52,23 +53,22 @@ class Motion:
     @property
     def trusted(self) -> np.ndarray:
         """(4,) feet that stand on trusted ground."""
-        return self.reference.leg_status == LegStatus.STANCE
+        return is_trusted(self.reference.leg_status)
 
     @property
     def grounded(self) -> np.ndarray:
         """(4,) legs that stand on trusted ground, or stood on it before they were lifted."""
-        return self._ground == LegStatus.STANCE
+        return is_trusted(self._ground)
 
     @property
     def sinking(self) -> np.ndarray:
         """(4,) feet on ground that gives way."""
-        return self.reference.leg_status == LegStatus.COLLAPSING
+        return is_sinking(self.reference.leg_status)
 
     @property
     def bearing(self) -> np.ndarray:
         """(4,) feet that stand on ground not known to give way."""
-        status = self.reference.leg_status
-        return (status == LegStatus.STANCE) | (status == LegStatus.PROBING)
+        return is_firm(self.reference.leg_status)
 
     @property
     def in_air(self) -> bool:

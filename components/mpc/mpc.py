@@ -9,8 +9,9 @@ from typing import ClassVar
 import numpy as np
 import pinocchio as pin
 
-from surefoot.bus.messages import ControlMode, LegStatus, MotionReference, Policy, StateEstimate
+from surefoot.bus.messages import ControlMode, MotionReference, Policy, StateEstimate
 from surefoot.components.component import Component, Inbox, Outbox
+from surefoot.components.footing import is_grounded
 from surefoot.components.memory import Memory
 from surefoot.components.mpc.motion_sampler import MotionSampler
 from surefoot.components.ocp.centroidal_dynamics import Trajectory
@@ -22,8 +23,6 @@ from surefoot.components.robot_model.rotation import exp_rotation, matrix_of, sk
 from surefoot.components.robot_model.rotations import exp_rotations, log_rotations
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
-
-_STANDING = (LegStatus.STANCE, LegStatus.PROBING, LegStatus.COLLAPSING)
 
 
 class _Stopwatch:
@@ -140,7 +139,7 @@ class Mpc(Component):
         the ground since then count too: until the new policy comes `wbc` asks their wrench of the other feet.
         """
         if self._iterate is None:
-            stance = np.array([status in _STANDING for status in reference.leg_status.tolist()])
+            stance = is_grounded(reference.leg_status)
             force = np.zeros((4, 3))
             force[stance, 2] = self._mass * GRAVITY / max(int(stance.sum()), 1)
             return force

@@ -6,9 +6,10 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from surefoot.bus.messages import ControlMode, JointCommand, LegStatus, MotionReference, Policy, StateEstimate
+from surefoot.bus.messages import ControlMode, JointCommand, MotionReference, Policy, StateEstimate
 from surefoot.bus.topics import TOPICS
 from surefoot.components.component import Component, Inbox, Outbox
+from surefoot.components.footing import is_grounded, is_probing, is_trusted
 from surefoot.components.gait.swing_spline import SwingSpline
 from surefoot.components.memory import Memory
 from surefoot.components.robot_model import LegKinematics
@@ -18,6 +19,8 @@ from surefoot.components.wbc.momentum_observer import MomentumObserver
 from surefoot.components.wbc.whole_body_qp import QpFailed, Task, WholeBodyQp
 from surefoot.config.deployment import Deployment
 from surefoot.config.robot import GRAVITY
+
+_DAMPING = 1e-4 * np.eye(3)  # [m^2]: of a leg's inverse velocity kinematics, where it is nearly straight
 
 
 class _Joints(NamedTuple):
@@ -148,9 +151,8 @@ class Wbc(Component):
         self._observe(t, reference)
         joints, acceleration = self._feet(t, estimate, reference, R, stance)
         settings = self._settings
-        weight = np.where(
-            reference.leg_status == LegStatus.PROBING, settings.probe_force_weight, settings.force_weight
-        )
+        probing = is_probing(reference.leg_status)
+        weight = np.where(probing, settings.probe_force_weight, settings.force_weight)
         # A foot that has just left the ground may still carry in the policy: the wrench it was to give is
         # asked of the others, or the base would tip towards it until the next policy comes.
         bias_force = target.force_W * stance[:, None]
@@ -200,7 +202,7 @@ class Wbc(Component):
     ) -> tuple[_Joints, np.ndarray]:
         """References of the joints, and the accelerations (4, 3) that the feet are to have [m/s^2]."""
         settings = self._settings
-        crept = (reference.p_WF - estimate.p_WF) * _bears(reference)[:, None]
+        crept = (reference.p_WF - estimate.p_WF) * is_grounded(reference.leg_status)[:, None]
         acceleration = settings.stance_kp * crept - settings.stance_kd * estimate.v_WF
         q, dq, kp = estimate.q.copy(), self._still_feet(estimate, R), np.zeros(12)
         leg = reference.swing_leg
@@ -233,7 +235,7 @@ class Wbc(Component):
     def _observe(self, t: float, reference: MotionReference) -> None:
         """The momentum observer sees the forces of the last cycle while every foot is trusted."""
         qp, dt = self._qp, t - self._last_t
-        if (reference.leg_status == LegStatus.STANCE).all() and 0.0 < dt < self._settings.observer_gap_s:
+        if is_trusted(reference.leg_status).all() and 0.0 < dt < self._settings.observer_gap_s:
             self._observer.update(qp.momentum_W, qp.wrench_map @ self._last_force.ravel(), dt)
         else:
             self._observer.freeze()
@@ -243,7 +245,7 @@ class Wbc(Component):
         p_BF = (estimate.p_WF - estimate.p_WB) @ R
         carried = R.T @ estimate.v_WB_W + cross(estimate.omega_WB_B, p_BF)
         J = self._legs.jacobian(estimate.q.reshape(4, 3))
-        damped = J @ J.swapaxes(1, 2) + 1e-4 * np.eye(3)
+        damped = J @ J.swapaxes(1, 2) + _DAMPING
         return -(J.swapaxes(1, 2) @ np.linalg.solve(damped, carried[..., None])).ravel()
 
     def _swing(self, t: float, estimate: StateEstimate, reference: MotionReference, R: np.ndarray):
@@ -263,17 +265,11 @@ class Wbc(Component):
         acceleration = acceleration * min(1.0, settings.swing_acceleration_max / max(length, 1e-9))
         J = self._legs.jacobian(q)[leg]
         carried = estimate.v_WB_W + R @ cross(estimate.omega_WB_B, p_BF[leg])
-        dq = np.linalg.solve(J @ J.T + 1e-4 * np.eye(3), (v - carried) @ R)
+        dq = np.linalg.solve(J @ J.T + _DAMPING, (v - carried) @ R)
         return acceleration, q[leg], J.T @ dq
 
 
 def _stance(t: float, estimate: StateEstimate, reference: MotionReference, orphaned: bool) -> np.ndarray:
     """(4,) the feet that bear. Without the state machine nobody else tells when one on its way down has landed."""
     landed = orphaned & (t > reference.swing_t1) & estimate.contact
-    return _bears(reference) | landed
-
-
-def _bears(reference: MotionReference) -> np.ndarray:
-    """(4,) the feet that the state machine has on the ground."""
-    status = reference.leg_status
-    return (status == LegStatus.STANCE) | (status == LegStatus.PROBING) | (status == LegStatus.COLLAPSING)
+    return is_grounded(reference.leg_status) | landed

@@ -21,6 +21,10 @@ from surefoot.config.wbc import Wbc
 
 _NV, _NF = 18, 12
 _NZ = _NV + _NF
+_UPPER, _ABOVE = np.triu(np.ones((_NV, _NV), bool)), np.triu(np.ones((_NV, _NV), bool), 1)
+"""Of a symmetric matrix what Pinocchio fills, with and without the diagonal."""
+_FORCES = np.vstack([np.tile(np.eye(3), 4), np.zeros((3, _NF))])
+"""(6, 12) what each force adds to the wrench, without its moment."""
 
 
 class QpFailed(RuntimeError):
@@ -83,7 +87,7 @@ class WholeBodyQp:
         pin.computeJointJacobians(model, data, q)
         pin.updateFramePlacements(model, data)
         M = pin.crba(model, data, q)
-        self._M = np.triu(M) + np.triu(M, 1).T
+        self._M = np.where(_UPPER, M, 0.0) + np.where(_ABOVE, M, 0.0).T
         self._h = pin.nonLinearEffects(model, data, q, v).copy()
         pin.ccrba(model, data, q, v)
         self.com_W = data.com[0].copy()
@@ -96,8 +100,7 @@ class WholeBodyQp:
             self.J[leg] = pin.getFrameJacobian(model, data, frame, world)[:3]
             self._bias[leg] = pin.getFrameClassicalAcceleration(model, data, frame, world).linear
             self.p_WF[leg] = data.oMf[frame].translation
-        self.wrench_map = np.zeros((6, _NF))
-        self.wrench_map[:3] = np.tile(np.eye(3), 4)
+        self.wrench_map = _FORCES.copy()
         self.wrench_map[3:] = skew(self.p_WF - self.com_W).transpose(1, 0, 2).reshape(3, _NF)
 
     def solve(self, task: Task) -> tuple[np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 
@@ -28,10 +29,19 @@ def store(
     if out.dtype.kind == "f":
         out[:] = values
         return ()
-    limits = np.iinfo(out.dtype)
     scaled = np.trunc(values.astype(np.float32) * np.float32(scale))
-    out[:] = stored = np.clip(scaled, limits.min, limits.max)
+    stored = np.clip(scaled, *_limits(out.dtype))
+    out[:] = stored
+    if (stored == scaled).all():
+        return ()
     return tuple(
         f"{what} of {names[n]} = {values[n]:.6g} does not fit the packet: {stored[n] / scale:.6g} is sent"
         for n in np.flatnonzero(stored != scaled).tolist()
     )
+
+
+@cache
+def _limits(dtype: np.dtype) -> tuple[np.float32, np.float32]:
+    """The smallest and the largest figure of an integer type."""
+    limits = np.iinfo(dtype)
+    return np.float32(limits.min), np.float32(limits.max)
