@@ -13,8 +13,7 @@ from surefoot.hw.aliengo.plausibility import Plausibility
 from surefoot.hw.aliengo.remote import decode_remote, encode_remote
 from surefoot.hw.aliengo.seal import seal, unseal
 
-_W_LAST, _AS_IS = np.array([3, 0, 1, 2]), np.arange(4)
-"""Where w, x, y and z are in a quaternion of the packet."""
+_W_FIRST, _W_LAST = np.arange(4), np.array([3, 0, 1, 2])
 
 _OF_MOTORS = ("q", "dq", "ddq", "tau", "temperature")
 
@@ -41,7 +40,7 @@ def decode_state(
         if name in motor.dtype.names
     }
     state = AliengoState(
-        quat_WB=record["quat"].astype(float)[_W_LAST if _w_is_last(generation, reading) else _AS_IS],
+        quat_WB=record["quat"].astype(float)[_places(generation, reading)],
         omega_WB_B=record["gyro"].astype(float),
         acc_B=_upwards(reading) * record["acc"].astype(float),
         rpy=record["rpy"].astype(float),
@@ -70,7 +69,7 @@ def encode_state(state: AliengoState, generation: Generation, reading: Reading) 
     record = np.frombuffer(packet, generation.state.dtype)
     motor = record["motor"][0, :12]
     record["level_flag"] = LOW_LEVEL
-    record["quat"][0, _W_LAST if _w_is_last(generation, reading) else _AS_IS] = state.quat_WB
+    record["quat"][0, _places(generation, reading)] = state.quat_WB
     record["gyro"] = state.omega_WB_B
     record["acc"] = _upwards(reading) * state.acc_B
     record["rpy"] = state.rpy
@@ -89,9 +88,9 @@ def encode_state(state: AliengoState, generation: Generation, reading: Reading) 
     return seal(packet, generation.state), limited
 
 
-def _w_is_last(generation: Generation, reading: Reading) -> bool:
-    """Whether a quaternion of the packet is (x, y, z, w), not (w, x, y, z)."""
-    return generation.name == "G0" and reading.g0_quaternion == "xyzw"
+def _places(generation: Generation, reading: Reading) -> np.ndarray:
+    """(4,) where w, x, y and z are in a quaternion of the packet."""
+    return _W_LAST if generation.name == "G0" and reading.g0_quaternion == "xyzw" else _W_FIRST
 
 
 def _upwards(reading: Reading) -> float:

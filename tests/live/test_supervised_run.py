@@ -18,7 +18,7 @@ def test_every_process_but_io_is_restarted_while_the_robot_stands(supervised):
     for name in ("estimator", "wbc", "mpc", "trajopt", "fsm"):
         live.command("restart", name)
         live.wait(lambda name=name: live.boot(name) == 1)
-        live.go_on(0.3)
+        live.go_on(0.6)
         assert live.stands(), name
     assert not any(status.bad_messages for status in live.status.values())
 
