@@ -8,6 +8,7 @@ other process is its client. Multicast and gossip are off: nothing leaves the ma
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from zlib import crc32
 
@@ -21,6 +22,8 @@ from surefoot.config.network import Network
 _CONNECT_MS = 30_000
 _MARK_BYTES = 32
 _SUM_BYTES = 4
+_POOLS = ("rx", "tx", "net", "acc")
+"""The pools of threads that Zenoh has beside the one for applications."""
 _TX = {
     "lease": 2000,
     "keep_alive": 4,
@@ -31,6 +34,15 @@ _TX = {
         "congestion_control": {"drop": {"wait_before_drop": 0}, "block": {"wait_before_close": 2_000_000}},
     },
 }
+
+
+def keep_to_one_thread() -> None:
+    """Let Zenoh do all its work of this process on one thread; to be called before the first session.
+
+    By default a message that comes in wakes three threads one after the other, and that is most of its price. Only
+    for processes that listen: elsewhere, while one thread waits for a reader that is late, others have to send.
+    """
+    os.environ.setdefault("ZENOH_RUNTIME", f"({', '.join(f'{pool}: (handover: app)' for pool in _POOLS)})")
 
 
 class Marked(bytes):

@@ -1,4 +1,4 @@
-"""What the control chain asks of its machine on the monotonic clock: to come before ordinary programs."""
+"""What the control chain asks of its machine: to come before ordinary programs, and onlookers after all."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from pathlib import Path
 _THREADS = Path("/proc/self/task")
 _TOPOLOGY = "/sys/devices/system/cpu"
 _MCL_CURRENT, _MCL_FUTURE, _MCL_ONFAULT = 1, 2, 4  # of mlockall(2)
+_LOWEST = 19  # niceness
 _REMEDY = "`surefoot service install`, or `USER - rtprio 80` in /etc/security/limits.d/ and a new login"
 
 
@@ -62,6 +63,18 @@ def preferred(priority: int) -> Iterator[bool]:
         yield True
     finally:
         os.sched_setscheduler(0, before, parameters)
+
+
+def give_way() -> None:
+    """Let the calling thread, and those that it makes, compute only when no other wants to.
+
+    Niceness is not enough: even the nicest thread may finish its slice of some milliseconds before one that wakes
+    up, and that is more than a cycle. For good: an ordinary user cannot take it back.
+    """
+    if hasattr(os, "sched_setscheduler"):
+        os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+    else:
+        os.nice(_LOWEST - os.nice(0))
 
 
 def refusal(priority: int) -> str:

@@ -79,3 +79,9 @@ def test_threads_of_one_core_are_not_taken_for_two_cores(siblings, order, tmp_pa
     monkeypatch.setattr(real_time, "_TOPOLOGY", str(tmp_path))
     assert real_time._cores(set(range(len(siblings)))) == order
     assert real_time._cores({1}) == [1]
+
+
+def test_who_gives_way_takes_those_along_that_come_later_and_no_others():
+    wait = "threading.Thread(target=time.sleep, args=(5,), daemon=True).start()\n"
+    tell = "print(*(os.sched_getscheduler(int(t)) == os.SCHED_IDLE for t in sorted(os.listdir('/proc/self/task'))))"
+    assert said(f"{wait}real_time.give_way()\n{wait}{tell}") == "True False True"

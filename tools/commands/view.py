@@ -10,8 +10,6 @@ from surefoot.tools.commands.call import CallError
 
 PORT = 8080
 
-_LOWEST = 19  # niceness: the control chain goes first
-
 _VIEW = """\
 Show a running stack in a browser, or a recording with its time in your hand: the robot, the terrain and the map,
 footholds with what was found of them, forces asked and measured, support polygon, planned swing and horizon.
@@ -63,10 +61,11 @@ def check_view(port: int) -> None:
 def _run(call: argparse.Namespace) -> int:
     check_view(call.port)
 
-    import os
     import signal
 
+    from surefoot.bus.session import keep_to_one_thread
     from surefoot.components.process_end import ProcessEnd
+    from surefoot.components.real_time import give_way
     from surefoot.tools.view.bus_source import BusSource
     from surefoot.tools.view.page import Page
     from surefoot.tools.view.recording_source import RecordingSource
@@ -78,8 +77,9 @@ def _run(call: argparse.Namespace) -> int:
     if call.recording is not None:
         source = RecordingSource(call.recording, call.from_t)
     else:
+        keep_to_one_thread()
         source = BusSource(lambda: open_bus(call), call.wait)
-        os.nice(_LOWEST - os.nice(0))
+        give_way()
     end = ProcessEnd(call.parent)
     page = Page(source, call.port)
     if source.words:

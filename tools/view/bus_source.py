@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 
 from surefoot.bus.codec import decode
@@ -49,6 +50,9 @@ class BusSource:
         Raises:
             BusError: no stack runs there, and none is waited for.
         """
+        # A run in simulated time waits for the threads that take messages off the bus. They inherit the priority
+        # of who makes them: here of one thread that keeps its own, even if the caller has given way meanwhile.
+        self._visitor = ThreadPoolExecutor(max_workers=1)
         self._connect = connect
         self._visit: _Visit | None = None
         self.deployment: Deployment | None = None
@@ -57,7 +61,7 @@ class BusSource:
         self._asked = self._tried = 0.0
         self._ended = ""
         try:
-            self._visit = _Visit(connect)
+            self._visit = self._visitor.submit(_Visit, connect).result()
         except BusError as error:
             if not wait:
                 raise
@@ -102,6 +106,7 @@ class BusSource:
         """Leave the bus."""
         if self._visit is not None and not self._ended:
             self._visit.watch.close()
+        self._visitor.shutdown()
 
     def _learn(self, session: Session) -> None:
         """What is running; a stack that is just starting does not say it yet."""
@@ -112,7 +117,7 @@ class BusSource:
 
     def _visit_again(self) -> None:
         with suppress(BusError):
-            self._visit = _Visit(self._connect)
+            self._visit = self._visitor.submit(_Visit, self._connect).result()
             self._ended, self.deployment, self.heard = "", None, Heard()
 
 

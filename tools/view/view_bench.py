@@ -18,6 +18,7 @@ from websockets.sync.client import connect
 from websockets.typing import Subprotocol
 
 from surefoot.bus.topics import CYCLE_HZ, PROCESSES
+from surefoot.components.real_time import give_way
 from surefoot.config.deployment import load_deployment
 from surefoot.tools.commands.call import deployment_file
 from surefoot.tools.picture import Picture
@@ -157,6 +158,7 @@ class _Browser:
         self._socket.close()
 
     def _take(self) -> None:
+        give_way()  # a browser's place is another computer
         try:
             for message in self._socket:
                 self.received += len(message)

@@ -3,6 +3,7 @@
 import os
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from surefoot.tools.cli import main
 from surefoot.tools.commands.call import deployment_file
 from surefoot.tools.view.bus_source import BusSource
 from surefoot.tools.view.page import Page
+from surefoot.tools.view.view_process import ViewProcess
 
 PATIENCE_S = 60.0  # other jobs share the cores, and no test is decided by it
 """Of wall time."""
@@ -100,7 +102,28 @@ def test_a_button_says_its_command_on_the_bus_and_shows_what_becomes_of_it(names
     stack.close()
 
 
-def test_without_a_run_it_says_so_or_waits(namespace, capsys):
+@pytest.mark.skipif(not hasattr(os, "SCHED_IDLE"), reason="priorities as Linux has them")
+def test_who_draws_gives_way_and_who_takes_messages_does_not(namespace, tmp_path):
+    end = time.monotonic() + PATIENCE_S
+    with ViewProcess(namespace, 0, tmp_path / "view.log") as view:
+        while not view.url():
+            assert time.monotonic() < end
+            time.sleep(0.05)
+        stack = PlayedStack(namespace)  # only now: the view makes Zenoh's threads after it has given way
+        zenoh = {}
+        while not zenoh:
+            assert time.monotonic() < end
+            time.sleep(0.05)
+            for thread in Path(f"/proc/{view.pid}/task").iterdir():
+                if (name := (thread / "comm").read_text().strip()).endswith("-0"):
+                    zenoh[name] = os.sched_getscheduler(int(thread.name))
+        stack.close()
+        assert zenoh == {"app-0": os.SCHED_OTHER}
+        assert os.sched_getscheduler(view.pid) == os.SCHED_IDLE
+
+
+def test_without_a_run_it_says_so_or_waits(namespace, capsys, monkeypatch):
+    monkeypatch.setenv("ZENOH_RUNTIME", "()")  # as it is by default, here and for what is started later
     with pytest.raises(BusError):
         BusSource(lambda: Session(namespace, connect_ms=200), wait=False)
     assert main(["view", "--namespace", namespace, "--port", "0"]) == 2
