@@ -83,5 +83,6 @@ def test_threads_of_one_core_are_not_taken_for_two_cores(siblings, order, tmp_pa
 
 def test_who_gives_way_takes_those_along_that_come_later_and_no_others():
     wait = "threading.Thread(target=time.sleep, args=(5,), daemon=True).start()\n"
-    tell = "print(*(os.sched_getscheduler(int(t)) == os.SCHED_IDLE for t in sorted(os.listdir('/proc/self/task'))))"
+    tell = "tasks = sorted(map(int, os.listdir('/proc/self/task')))\n"
+    tell += "print(*(os.sched_getscheduler(task) == os.SCHED_IDLE for task in tasks))"
     assert said(f"{wait}real_time.give_way()\n{wait}{tell}") == "True False True"
