@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -76,7 +77,7 @@ Item = Shapes | Mesh | Lines | Arrows | Words
 Drawing = dict[str, Item]
 """By name: the layer, a slash, and what it is in there."""
 
-UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 """The quaternion of what is not turned."""
 
 
@@ -85,7 +86,19 @@ def path(points_W: np.ndarray) -> np.ndarray:
     return np.stack([points_W[:-1], points_W[1:]], axis=1)
 
 
-def level(kind: Kind, p_W: np.ndarray, size_m: np.ndarray | tuple[float, ...], rgb: np.ndarray) -> Shapes:
-    """Shapes at points (n, 3) that are not turned; `size_m` of all or of each."""
+@lru_cache(maxsize=256)
+def rows(row: tuple[float, ...], n: int) -> np.ndarray:
+    """(n, k) the same row over and over; the same array each time: what has not changed is not even compared."""
+    return np.broadcast_to(np.array(row), (n, len(row)))
+
+
+@lru_cache(maxsize=256)
+def colours(rgb: Rgb, n: int) -> np.ndarray:
+    """(n, 3) one colour over and over, uint8; the same array each time."""
+    return np.broadcast_to(np.array(rgb, np.uint8), (n, 3))
+
+
+def level(kind: Kind, p_W: np.ndarray, size_m: tuple[float, ...], rgb: np.ndarray) -> Shapes:
+    """Shapes of one size at points (n, 3) that are not turned."""
     n = len(p_W)
-    return Shapes(kind, p_W, np.tile(UPRIGHT, (n, 1)), np.broadcast_to(size_m, (n, 3)), rgb)
+    return Shapes(kind, p_W, rows(UPRIGHT, n), rows(size_m, n), rgb)

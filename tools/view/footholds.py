@@ -47,11 +47,12 @@ def draw_candidates(history: History, foot_radius_m: float) -> Drawing:
 
 def _untested(history: History, reference: MotionReference) -> list[Spot]:
     """Where feet stand that no event has told of: as the robot got up, or before anybody listened."""
-    legs = [leg for leg in range(4) if leg != reference.leg]
+    told_W = np.array([spot.p_W for spot in history.spots]).reshape(-1, 1, 3)
+    apart_m = np.linalg.norm(told_W - reference.p_WF, axis=2).min(axis=0, initial=np.inf)
     return [
         Spot(leg, reference.p_WF[leg], Verdict.UNTESTED)
-        for leg in legs
-        if not any(np.linalg.norm(spot.p_W - reference.p_WF[leg]) < _SAME_M for spot in history.spots)
+        for leg in range(4)
+        if leg != reference.leg and apart_m[leg] >= _SAME_M
     ]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from surefoot.bus.messages import JointCommand, MotionReference, Plan, StateEstimate
-from surefoot.tools.view.drawing import Arrows, Drawing, Shapes
+from surefoot.tools.view.drawing import Arrows, Drawing, Shapes, colours, rows
 from surefoot.tools.view.palette import ASKED, CONE, CONE_M, ENVELOPE, FORCE_M_PER_N, MEASURED
 
 _LEAST_N = 3.0  # a shorter arrow is only its head
@@ -40,9 +40,8 @@ def draw_cones(p_WF: np.ndarray, normal_W: np.ndarray, friction: float, foot_rad
     quat = np.array([np.cos(half), *(np.sin(half) * across), 0.0])
     width = 2.0 * friction * CONE_M
     tips = p_WF - foot_radius_m * normal_W
-    rgb = np.tile(np.array(CONE, np.uint8), (n, 1))
-    size = np.tile([width, width, CONE_M], (n, 1))
-    return {"cone/feet": Shapes("cone", tips, np.tile(quat, (n, 1)), size, rgb, 0.3)}
+    size = rows((width, width, CONE_M), n)
+    return {"cone/feet": Shapes("cone", tips, np.tile(quat, (n, 1)), size, colours(CONE, n), 0.3)}
 
 
 def _arrows(p_W: np.ndarray, force_W: np.ndarray, rgb, beside_m: float, radius_m: float = 0.006) -> Arrows:

@@ -8,7 +8,7 @@ from surefoot.bus.messages import LegStatus
 from surefoot.components.robot_model import LegKinematics
 from surefoot.components.robot_model.rotation import matrix_of
 from surefoot.config.robot import JOINTS, LEGS, Primitive, Robot
-from surefoot.tools.view.drawing import UPRIGHT, Drawing, Rgb, Shapes
+from surefoot.tools.view.drawing import UPRIGHT, Drawing, Rgb, Shapes, rows
 from surefoot.tools.view.palette import LEG_RGB
 
 _LINK_RGB: dict[str, Rgb] = {
@@ -18,8 +18,6 @@ _LINK_RGB: dict[str, Rgb] = {
     "calf": (80, 86, 94),
 }
 _ACROSS = np.array([np.sqrt(0.5), -np.sqrt(0.5), 0.0, 0.0])  # turns z to y: a cylinder across the leg
-
-_UPRIGHT_FEET = np.tile(UPRIGHT, (4, 1))
 
 
 class RobotShapes:
@@ -40,10 +38,12 @@ class RobotShapes:
         # The same objects in every drawing: what has not changed is not sent.
         self._box_size, self._box_rgb = size[box], rgb[box]
         self._cylinder_size, self._cylinder_rgb = size[~box], rgb[~box]
-        self._foot_size = np.full((4, 3), 2.0 * robot.foot.radius)
+        self._foot_size = rows((2.0 * robot.foot.radius,) * 3, 4)
         links = [robot.trunk, *(getattr(robot.legs[leg], joint) for leg in LEGS for joint in JOINTS)]
         self._mass = np.array([link.mass for link in links])
         self._com = np.array([link.com for link in links])
+        self._posture: tuple[np.ndarray, ...] = ()
+        self._placed: tuple[np.ndarray, np.ndarray] | None = None
 
     def draw(self, p_WB: np.ndarray, quat_WB: np.ndarray, q: np.ndarray, leg_status: np.ndarray) -> Drawing:
         """The shapes of a posture; a foot has the colour of what its leg is at.
@@ -63,7 +63,7 @@ class RobotShapes:
         return {
             "robot/boxes": Shapes("box", centre[box], quat[box], self._box_size, self._box_rgb),
             "robot/cylinders": Shapes("cylinder", centre[~box], across, self._cylinder_size, self._cylinder_rgb),
-            "robot/feet": Shapes("sphere", feet, _UPRIGHT_FEET, self._foot_size, foot_rgb),
+            "robot/feet": Shapes("sphere", feet, rows(UPRIGHT, 4), self._foot_size, foot_rgb),
         }
 
     def com(self, p_WB: np.ndarray, quat_WB: np.ndarray, q: np.ndarray) -> np.ndarray:
@@ -78,6 +78,9 @@ class RobotShapes:
 
     def _links(self, p_WB: np.ndarray, quat_WB: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(13, 3) origins and (13, 4) orientations of the trunk and of hip, thigh and calf of each leg."""
+        posture = p_WB, quat_WB, q
+        if self._placed is not None and all(a is b for a, b in zip(posture, self._posture, strict=True)):
+            return self._placed
         angles = q.reshape(4, 3)
         thigh_B, knee_B = self.legs.joints(angles)
         R_WB = matrix_of(quat_WB)
@@ -88,7 +91,8 @@ class RobotShapes:
         calf = _product(hip, _about(1, angles[:, 1] + angles[:, 2]))
         turned = np.stack([hip, thigh, calf], axis=1).reshape(12, 4)
         quat = np.concatenate([quat_WB[None], _product(np.broadcast_to(quat_WB, (12, 4)), turned)])
-        return p, quat
+        self._posture, self._placed = posture, (p, quat)
+        return self._placed
 
 
 def _side(robot: Robot, leg: str) -> float:

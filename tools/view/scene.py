@@ -17,7 +17,7 @@ from surefoot.tools.view.history import History
 from surefoot.tools.view.map_tiles import draw_map
 from surefoot.tools.view.plans import draw_horizon, draw_swing
 from surefoot.tools.view.robot_shapes import RobotShapes
-from surefoot.tools.view.support import draw_support
+from surefoot.tools.view.support import Support
 from surefoot.tools.view.terrain_shapes import TerrainShapes
 
 _STALE_S = 0.3  # what is older belongs to no picture of now
@@ -39,6 +39,7 @@ class Scene:
         self._foot_radius_m = robot.foot.radius
         self._friction, self._margin_m = deployment.ocp.friction, deployment.fsm.margin_m
         self._com: tuple[StateEstimate, np.ndarray] | None = None
+        self._support: Support | None = None
         self._told: tuple = ()
         self._tried: Drawing = {}
         self._grid: ElevationGrid | None = None
@@ -83,7 +84,9 @@ class Scene:
         )
         if reference is not None and _stands(reference.p_WF):
             margin_m = reference.support_margin_m or self._margin_m
-            drawing |= draw_support(reference, self._com_W(estimate), self._foot_radius_m, margin_m)
+            if self._support is None or not self._support.holds(reference, margin_m):
+                self._support = Support(reference, self._foot_radius_m, margin_m)
+            drawing |= self._support.draw(self._com_W(estimate))
         return drawing
 
     def _intentions(self, heard: Heard) -> Drawing:

@@ -71,6 +71,7 @@ class _Node:
     def __init__(self, scene: viser.SceneApi, name: str, item: Item):
         self._kind = type(item)
         self._item: Item | None = None
+        self._visible = True
         self._room = 0
         if isinstance(item, Shapes):
             self._shape = item.kind
@@ -96,11 +97,11 @@ class _Node:
             case Lines() | Arrows():
                 if len(item.points_W):
                     handle.points = item.points_W.astype(np.float32)
-                handle.visible = len(item.points_W) > 0
+                self._set_visible(len(item.points_W) > 0)
                 return
             case Words():
                 handle.text, handle.position = item.text, item.p_W
-        handle.visible = True
+        self._set_visible(True)
 
     def _show_shapes(self, item: Shapes, last: Shapes | None) -> None:
         """An array that is the same object as before is not even compared."""
@@ -116,8 +117,13 @@ class _Node:
 
     def hide(self) -> None:
         """Until it is shown again."""
-        if self._item is not None:
-            self._handle.visible, self._item = False, None
+        self._item = None
+        self._set_visible(False)
+
+    def _set_visible(self, visible: bool) -> None:
+        """Of most items nothing changes, and viser takes longer to find that out."""
+        if visible != self._visible:
+            self._handle.visible = self._visible = visible
 
     def remove(self) -> None:
         """For ever."""
