@@ -10,6 +10,8 @@ from surefoot.tools.commands.call import CallError
 
 PORT = 8080
 
+_LOWEST = 19  # niceness, of the threads that a run in simulated time may have to wait for
+
 _VIEW = """\
 Show a running stack in a browser, or a recording with its time in your hand: the robot, the terrain and the map,
 footholds with what was found of them, forces asked and measured, support polygon, planned swing and horizon.
@@ -61,6 +63,7 @@ def check_view(port: int) -> None:
 def _run(call: argparse.Namespace) -> int:
     check_view(call.port)
 
+    import os
     import signal
 
     from surefoot.bus.session import keep_to_one_thread
@@ -78,6 +81,7 @@ def _run(call: argparse.Namespace) -> int:
         source = RecordingSource(call.recording, call.from_t)
     else:
         keep_to_one_thread()
+        os.nice(_LOWEST - os.nice(0))
         source = BusSource(lambda: open_bus(call), call.wait)
         give_way()
     end = ProcessEnd(call.parent)

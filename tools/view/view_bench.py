@@ -71,8 +71,15 @@ def rows(found: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
     cycles = [np.median([each["cycle_hz"] for each in found[name]]) for name in ("with", "without")]
     yield "  cycles/s of the run with a view, without", "", f"{cycles[0]:6.0f} {cycles[1]:6.0f}"
     for process in ("wbc", "mpc", "estimator", "fsm"):
-        p99 = [np.median([each["p99_ms"][process] for each in found[name]]) for name in ("with", "without")]
-        yield f"  {process} p99 with a view, without [ms]", "", f"{p99[0]:6.2f} {p99[1]:6.2f}"
+        seen, unseen = (
+            np.array([each["p99_ms"][process] for each in found[name]]) for name in ("with", "without")
+        )
+        higher = f"higher with it in {(seen > unseen).sum()} of {len(seen)} pairs"
+        yield (
+            f"  {process} p99 with a view, without [ms]",
+            "",
+            f"{np.median(seen):6.2f} {np.median(unseen):6.2f}  {higher}",
+        )
 
 
 class _Watch:
