@@ -207,7 +207,8 @@ def _bar(name: str, held_n: float, asked: float, most_n: float) -> str:
         f"<span style='position:absolute;height:9px;width:{share:.0f}%;background:{_css(MEASURED)}'></span>"
         f"<span style='position:absolute;height:9px;width:{frame:.0f}%;border:1.5px solid {_css(ASKED)};"
         "box-sizing:border-box'></span></span>"
-        f"<span style='width:74px;text-align:right'>{held_n:.0f} of {asked:.0f} N</span></div>"
+        "<span style='min-width:84px;text-align:right;white-space:nowrap'>"
+        f"{held_n:.0f} of {asked:.0f} N</span></div>"
     )
 
 
