@@ -12,7 +12,6 @@ from pathlib import Path
 _THREADS = Path("/proc/self/task")
 _TOPOLOGY = "/sys/devices/system/cpu"
 _MCL_CURRENT, _MCL_FUTURE, _MCL_ONFAULT = 1, 2, 4  # of mlockall(2)
-_LOWEST = 19  # niceness
 _REMEDY = "`surefoot service install`, or `USER - rtprio 80` in /etc/security/limits.d/ and a new login"
 
 
@@ -69,12 +68,10 @@ def give_way() -> None:
     """Let the calling thread, and those that it makes, compute only when no other wants to.
 
     Niceness is not enough: even the nicest thread may finish its slice of some milliseconds before one that wakes
-    up, and that is more than a cycle. For good: an ordinary user cannot take it back.
+    up, and that is more than a cycle. For good: an ordinary user cannot take it back. Only Linux has this.
     """
-    if hasattr(os, "sched_setscheduler"):
+    if hasattr(os, "SCHED_IDLE"):
         os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
-    else:
-        os.nice(_LOWEST - os.nice(0))
 
 
 def refusal(priority: int) -> str:
