@@ -48,7 +48,7 @@ _REAL_TIME_FACTOR = 0.6
 
 
 def bench(say: Callable[[str], None] = print) -> dict:
-    """Measure and print a table `what | asked | got`; takes about four minutes.
+    """Measure and print a table `what | asked | got`; takes about ten minutes.
 
     Returns:
         `calibration_ms`; `step_ms`: median, p99 and maximum for each component; `mpc_stage_ms`: the same for
